@@ -159,7 +159,7 @@ void Payloads::Print(std::ostream& out) const {
     out << fmt::format("{:<9} {} messages of known channels checked, nothing wrong{}\n", "payloads", num_checked_, others);
     return;
   }
-  out << fmt::format("{:<9} {} messages of known channels checked, {} are WRONG{}\n", "payloads", num_checked_, num_faulty_, others);
+  out << fmt::format("{:<9} {} messages of known channels checked, {} are wrong{}\n", "payloads", num_checked_, num_faulty_, others);
   for (const auto& [place, found] : found_) {
     out << fmt::format("{:<9} {} {}: {}; the first is event {}, {}\n", "", found.count, place.first, place.second, found.first_event,
                        TimeText(found.first_time));

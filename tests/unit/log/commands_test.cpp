@@ -330,7 +330,7 @@ TEST_F(LogCommands, InfoTellsMessagesWhosePayloadIsNotWhole) {
                 .find("payloads  2 messages of known channels checked, nothing wrong; 1 of other channels are not looked into\n"),
             std::string::npos);
   const auto text = InfoOf(Write("log", {packets, flipped, bad_packets, cut, NavRaw(0, 1, 99), flipped}));
-  EXPECT_NE(text.find("damage    none\npayloads  6 messages of known channels checked, 5 are WRONG\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("damage    none\npayloads  6 messages of known channels checked, 5 are wrong\n"), std::string::npos) << text;
   EXPECT_NE(text.find("          2 POSE: of another type than the channel's; the first is event 1, 2027-01-15T08:00:00.000000Z\n"), std::string::npos)
       << text;
   EXPECT_NE(text.find("          1 POSE: do not decode; the first is event 3"), std::string::npos) << text;
