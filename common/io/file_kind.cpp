@@ -113,7 +113,8 @@ bool IsText(FileKind kind) { return kind == FileKind::kNmea || kind == FileKind:
 bool MayBe(const std::filesystem::path& file, FileKind kind, Wanted wanted) {
   switch (wanted) {
     case Wanted::kLog:
-      return kind == FileKind::kLcmLog || kind == FileKind::kUnknown || kind == FileKind::kEmpty;
+      // A log whose beginning is damaged may begin with letters.
+      return kind == FileKind::kLcmLog || kind == FileKind::kUnknown || kind == FileKind::kText || kind == FileKind::kEmpty;
     case Wanted::kCapture:
       return IsCapture(kind) || kind == FileKind::kUnknown || (kind == FileKind::kGzip && IsCapture(PackedKindOf(file)));
     case Wanted::kTextLog:
@@ -175,6 +176,11 @@ std::string HelpOf(const std::filesystem::path& file, FileKind kind, Wanted want
     default:
       return "";
   }
+}
+
+std::string Reason(const std::filesystem::path& file, FileKind kind, Wanted wanted) {
+  const auto help = HelpOf(file, kind, wanted);
+  return file.string() + ": is " + std::string(InWords(kind)) + std::string(NotOf(wanted)) + (help.empty() ? "" : "; " + help);
 }
 
 }  // namespace
@@ -273,12 +279,13 @@ std::string WhyNot(const std::filesystem::path& file, Wanted wanted) {
   if (kind == FileKind::kMissing) return name + "no such file";
   if (kind == FileKind::kUnreadable) return name + "cannot be read: the right to read it is missing, or the disk fails";
   if (kind == FileKind::kEmpty) return name + "is empty";
-  const auto help = HelpOf(file, kind, wanted);
-  return name + "is " + std::string(InWords(kind)) + std::string(NotOf(wanted)) + (help.empty() ? "" : "; " + help);
+  return Reason(file, kind, wanted);
 }
 
 std::string NoEventText(const std::filesystem::path& file) {
-  if (FileKindOf(file) == FileKind::kEmpty) return file.string() + ": is empty";
+  const auto kind = FileKindOf(file);
+  if (kind == FileKind::kEmpty) return file.string() + ": is empty";
+  if (kind == FileKind::kText) return Reason(file, kind, Wanted::kLog);
   const auto reason = WhyNot(file, Wanted::kLog);
   return reason.empty() ? file.string() + ": is no lcm-log: it holds no event" : reason;
 }

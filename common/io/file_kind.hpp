@@ -58,7 +58,7 @@ enum class Wanted {
 
 /// Why a file cannot be what is wanted, and the command that helps: "x.pcap: is a capture (pcap), no lcm-log. A log is made of it by: ..."
 ///
-/// @return empty where it may be what is wanted: kLcmLog, kUnknown, and kEmpty (a log that was just begun) where a log is wanted
+/// @return empty where it may be what is wanted. A log may also be kUnknown or kText (damaged at its beginning), or kEmpty (just begun)
 std::string WhyNot(const std::filesystem::path& file, Wanted wanted);
 
 /// What to say of a log in which no event was found: it is empty, or other than a log.

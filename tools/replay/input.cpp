@@ -185,7 +185,7 @@ InputKind KindOf(const std::filesystem::path& file) {
   if (io::WhyNot(file, io::Wanted::kCapture).empty() && kind != io::FileKind::kUnknown) return InputKind::kCapture;
   if (kind == io::FileKind::kLcmLog) return InputKind::kLog;
   // A log may be damaged at its start.
-  if (kind == io::FileKind::kUnknown && bus::LogReader(file, io::ThrowIfStopAsked).Next()) return InputKind::kLog;
+  if ((kind == io::FileKind::kUnknown || kind == io::FileKind::kText) && bus::LogReader(file, io::ThrowIfStopAsked).Next()) return InputKind::kLog;
   // Last: sentences stand in captures and logs too.
   return navigator::IsTextLog(file) ? InputKind::kTextLog : InputKind::kCapture;
 }

@@ -85,6 +85,8 @@ TEST_F(FileKinds, LeadToTheCommandThatHelps) {
   EXPECT_EQ(why_no_log("\xFD"s + "7zXZ\0"s), name + ": is compressed by xz, no lcm-log; unpack it first: xz -dk " + name);
   EXPECT_EQ(why_no_log("\xED\xA1\xDA\x01"s), "");
   EXPECT_EQ(why_no_log("\x01\x02"s), "") << "a damaged log is looked through";
+  EXPECT_EQ(why_no_log("letters"), "") << "as above";
+  EXPECT_NE(NoEventText(file_).find("is text, no lcm-log; if it holds sentences"), std::string::npos);
   EXPECT_EQ(why_no_log(""), "") << "a log that was just begun";
   EXPECT_EQ(NoEventText(file_), name + ": is empty");
   EXPECT_EQ(WhyNot(file_, Wanted::kRecording), name + ": is empty");
