@@ -7,17 +7,19 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <limits>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+
+#include "common/io/file_kind.hpp"
 
 namespace lookout::bus {
 
 namespace {
 
-// LCM channel names have at most 63 characters; its logs allow more.
+// LCM channel names have at most 63 characters; its logs allow more. Data have no bound but that of their length, an i32.
 constexpr std::int64_t kMaxChannelBytes = 1000;
-constexpr auto kMaxDataBytes = static_cast<std::int64_t>(kMaxLogDataBytes);
 // Read or written at once: system calls cost more than the copy. A scan's messages are larger: those that nobody wants are passed over.
 constexpr std::size_t kReadBytes = 64 * 1024;
 constexpr std::size_t kJumpBytes = 4 * 1024;
@@ -81,16 +83,17 @@ struct LogReader::Implementation {
     const auto time = UtimeFromWire(static_cast<std::int64_t>(ReadBigEndian(header, 12, 8)));
     const std::int64_t channel_size = ReadI32(header, 20);
     const std::int64_t data_size = ReadI32(header, 24);
-    if (!time || channel_size <= 0 || channel_size > kMaxChannelBytes || data_size < 0 || data_size > kMaxDataBytes) return std::nullopt;
+    if (!time || channel_size <= 0 || channel_size > kMaxChannelBytes || data_size < 0) return std::nullopt;
     const std::int64_t end = start + static_cast<std::int64_t>(kLogEventHeaderBytes) + channel_size + data_size;
     if (end > size_bytes) return std::nullopt;
+    const auto number = static_cast<std::int64_t>(ReadBigEndian(header, 4, 8));
 
     const std::size_t head_size = kLogEventHeaderBytes + static_cast<std::size_t>(channel_size);
     const std::size_t size = head_size + static_cast<std::size_t>(data_size);
     const Bytes head = View(start, head_size);
     if (head.size() < head_size) return std::nullopt;
     channel.assign(head.begin() + kLogEventHeaderBytes, head.end());  // what stands behind the event may be another stretch
-    const std::size_t given_size = std::min(num_wanted(channel), static_cast<std::size_t>(data_size));
+    const std::size_t given_size = std::min({num_wanted(channel), static_cast<std::size_t>(data_size), kMaxLogDataBytes});
     const bool is_jump = size - head_size - given_size >= kWorthAJumpBytes;
     const bool is_whole_given = given_size > 0 && !is_jump;
     if (is_whole_given) View(start, size + sizeof(kLogSyncWord));  // one stretch for all
@@ -109,7 +112,7 @@ struct LogReader::Implementation {
       data = kept;
     }
     position = end;
-    return LogEventView{*time, channel, data, start, static_cast<std::size_t>(data_size)};
+    return LogEventView{*time, channel, data, start, static_cast<std::size_t>(data_size), number};
   }
 
   // Whether an event begins at `start` and the file ends before it does.
@@ -119,8 +122,9 @@ struct LogReader::Implementation {
     const std::int64_t channel_size = ReadI32(header, 20);
     const std::int64_t data_size = ReadI32(header, 24);
     if (ReadBigEndian(header, 0, 4) != kLogSyncWord || channel_size <= 0 || channel_size > kMaxChannelBytes) return false;
-    if (data_size < 0 || data_size > kMaxDataBytes) return false;
-    return start + static_cast<std::int64_t>(kLogEventHeaderBytes) + channel_size + data_size > size_bytes;
+    if (data_size < 0 || start + static_cast<std::int64_t>(kLogEventHeaderBytes) + channel_size + data_size <= size_bytes) return false;
+    // A damaged length is not waited for: events stand behind it.
+    return data_size <= static_cast<std::int64_t>(kMaxLogDataBytes) || FindSync(start + 4) >= size_bytes;
   }
 
   // Whether the event from `start` to `end` is one event. A damaged length that fits in the file would swallow events behind it: then no
@@ -149,8 +153,8 @@ struct LogReader::Implementation {
 
 LogReader::LogReader(const std::filesystem::path& file, std::function<void()> on_search) : implementation_(std::make_unique<Implementation>()) {
   implementation_->on_search = std::move(on_search);
+  if (const auto reason = io::WhyNot(file, io::Wanted::kLog); !reason.empty()) throw std::runtime_error(reason);
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) throw std::runtime_error(file.string() + ": no such file");
   implementation_->size_bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
   implementation_->descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (error || implementation_->descriptor < 0) throw std::runtime_error(file.string() + ": cannot be opened");
@@ -172,7 +176,8 @@ void LogReader::Seek(std::int64_t position_bytes) { implementation_->position = 
 std::optional<LogEvent> LogReader::Next() {
   const auto view = NextView([](std::string_view) { return true; });
   if (!view) return std::nullopt;
-  return LogEvent{view->time, std::string(view->channel), {view->bytes.begin(), view->bytes.end()}};
+  return LogEvent{view->time,   std::string(view->channel), {view->bytes.begin(), view->bytes.end()},
+                  view->number, view->position_bytes,       view->num_data_bytes};
 }
 
 std::optional<LogEventView> LogReader::NextView(const std::function<bool(std::string_view channel)>& is_wanted) {
@@ -197,7 +202,23 @@ std::optional<LogEventView> LogReader::NextHeadSoFar(const std::function<std::si
   return NextHead(num_wanted);
 }
 
+void LogReader::ReadData(std::int64_t event_position_bytes, std::size_t channel_bytes, std::size_t offset, std::span<std::uint8_t> out) const {
+  auto place = event_position_bytes + static_cast<std::int64_t>(kLogEventHeaderBytes + channel_bytes + offset);
+  while (!out.empty()) {
+    const auto result = pread(implementation_->descriptor, out.data(), out.size(), place);
+    if (result < 0 && errno == EINTR) continue;
+    if (result <= 0) throw std::runtime_error("a log has changed while it was read");
+    out = out.subspan(static_cast<std::size_t>(result));
+    place += result;
+  }
+}
+
 void AppendLogEvent(std::vector<std::uint8_t>& log, std::int64_t number, Utime time, std::string_view channel, Bytes bytes) {
+  AppendLogEventHead(log, number, time, channel, bytes, bytes.size());
+}
+
+void AppendLogEventHead(std::vector<std::uint8_t>& log, std::int64_t number, Utime time, std::string_view channel, Bytes bytes,
+                        std::size_t num_data_bytes) {
   std::array<std::uint8_t, kLogEventHeaderBytes> header{};
   std::size_t place = 0;
   const auto put = [&](std::uint64_t value, int size) {
@@ -207,15 +228,24 @@ void AppendLogEvent(std::vector<std::uint8_t>& log, std::int64_t number, Utime t
   put(static_cast<std::uint64_t>(number), 8);
   put(static_cast<std::uint64_t>(ToUtimeUs(time)), 8);
   put(channel.size(), 4);
-  put(bytes.size(), 4);
+  put(num_data_bytes, 4);
   log.insert(log.end(), header.begin(), header.end());
   log.insert(log.end(), channel.begin(), channel.end());
   log.insert(log.end(), bytes.begin(), bytes.end());
 }
 
-void LogWriter::Write(Utime time, std::string_view channel, Bytes bytes) {
-  AppendLogEvent(block_, num_events_++, time, channel, bytes);
+void LogWriter::Write(Utime time, std::string_view channel, Bytes bytes) { WriteNumbered(next_number_, time, channel, bytes, bytes.size()); }
+
+void LogWriter::WriteNumbered(std::int64_t number, Utime time, std::string_view channel, Bytes bytes, std::size_t num_data_bytes) {
+  AppendLogEventHead(block_, number, time, channel, bytes, num_data_bytes);
+  next_number_ = number == std::numeric_limits<std::int64_t>::max() ? 0 : number + 1;
   num_bytes_ += static_cast<std::int64_t>(kLogEventHeaderBytes + channel.size() + bytes.size());
+  if (block_.size() >= kWriteBytes) Flush();
+}
+
+void LogWriter::Append(Bytes bytes) {
+  block_.insert(block_.end(), bytes.begin(), bytes.end());
+  num_bytes_ += static_cast<std::int64_t>(bytes.size());
   if (block_.size() >= kWriteBytes) Flush();
 }
 

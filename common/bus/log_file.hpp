@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,15 +23,20 @@ namespace lookout::bus {
 inline constexpr std::size_t kLogEventHeaderBytes = 28;
 inline constexpr std::uint32_t kLogSyncWord = 0xEDA1DA01;
 
-/// What an event may hold to be read again. LCM's own channels have at most 63 characters and never none, its reader stops at an event without name;
-/// a length of the data beyond is taken for damage.
+/// LCM's own channels have at most 63 characters and never none: its reader stops at an event without name.
 inline constexpr std::size_t kMaxLogChannelBytes = 63;
+
+/// What is held of an event at a time, and what the recorder writes of one at most. A log of others may have larger events (a camera on the same
+/// bus), up to the 2 GB of LCM's format: of such an event the reader gives so much as its beginning, and the rest by ReadData.
 inline constexpr std::size_t kMaxLogDataBytes = 16U * 1024 * 1024;
 
 struct LogEvent {
   Utime time;  // as logged: receive time, or in a replayed log the host time of the raw event
   std::string channel;
-  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> bytes;  // the first kMaxLogDataBytes
+  std::int64_t number = 0;          // as its writer counted
+  std::int64_t position_bytes = 0;  // of the event in the file
+  std::size_t num_data_bytes = 0;   // of the whole message
 };
 
 /// The same in the memory of the reader: it stands until the next call.
@@ -40,12 +46,13 @@ struct LogEventView {
   Bytes bytes;
   std::int64_t position_bytes = 0;  // of the event in the file
   std::size_t num_data_bytes = 0;   // of the whole message; `bytes` may be its beginning
+  std::int64_t number = 0;          // as its writer counted: a log may begin anew at 0, or have the same number throughout
 };
 
 class LogReader {
  public:
   /// @param on_search  called for each block while an event is looked for in damage, which may be gigabytes; what it throws comes through
-  /// @throws std::runtime_error when the file cannot be opened
+  /// @throws std::runtime_error when the file cannot be opened, or is plainly another kind of file (io::WhyNot): the text says what to do
   explicit LogReader(const std::filesystem::path& file, std::function<void()> on_search = {});
   ~LogReader();
   LogReader(const LogReader&) = delete;
@@ -54,7 +61,8 @@ class LogReader {
   /// @return the next whole event; nullopt at the end. Damaged stretches are skipped to the next event and counted.
   std::optional<LogEvent> Next();
 
-  /// The same without a copy. Of events on a channel that is not wanted the bytes are not read: they come without.
+  /// The same without a copy. Of events on a channel that is not wanted the bytes are not read: they come without. Of one that is larger than
+  /// kMaxLogDataBytes only the beginning comes.
   std::optional<LogEventView> NextView(const std::function<bool(std::string_view channel)>& is_wanted);
 
   /// The same, and of an event only the beginning is read.
@@ -64,6 +72,10 @@ class LogReader {
   /// For a log that is being written.
   /// @return the next event; nullopt where the file ends, or ends in an event that is not whole yet: that is no damage, and is asked for again
   std::optional<LogEventView> NextHeadSoFar(const std::function<std::size_t(std::string_view channel)>& num_wanted);
+
+  /// The data of an event that was given, from `offset` on: as many as `out` holds.
+  /// @throws std::runtime_error when the file no longer holds them
+  void ReadData(std::int64_t event_position_bytes, std::size_t channel_bytes, std::size_t offset, std::span<std::uint8_t> out) const;
 
   /// Damaged stretches, and a torn event at the end.
   std::int64_t num_damaged() const { return num_damaged_; }
@@ -90,6 +102,10 @@ class LogReader {
 /// @param channel  not empty: LCM's reader stops at an event without name
 void AppendLogEvent(std::vector<std::uint8_t>& log, std::int64_t number, Utime time, std::string_view channel, Bytes bytes);
 
+/// The same of an event of which `bytes` are the beginning only.
+void AppendLogEventHead(std::vector<std::uint8_t>& log, std::int64_t number, Utime time, std::string_view channel, Bytes bytes,
+                        std::size_t num_data_bytes);
+
 /// Makes the bytes of a log out of events.
 class LogWriter {
  public:
@@ -98,17 +114,23 @@ class LogWriter {
 
   explicit LogWriter(Take take) : take_(std::move(take)) {}
 
+  /// Events are numbered from 0, or on from the number that was given last.
   void Write(Utime time, std::string_view channel, Bytes bytes);
+
+  /// An event with a number of its own, of which more data follow by Append where `num_data_bytes` are more than `bytes`.
+  void WriteNumbered(std::int64_t number, Utime time, std::string_view channel, Bytes bytes, std::size_t num_data_bytes);
+  void Append(Bytes bytes);
 
   /// Hands on what was written: else the last of it stays behind.
   void Flush();
 
   std::int64_t num_bytes() const { return num_bytes_; }
+  std::int64_t next_number() const { return next_number_; }
 
  private:
   Take take_;
   std::vector<std::uint8_t> block_;
-  std::int64_t num_events_ = 0;
+  std::int64_t next_number_ = 0;
   std::int64_t num_bytes_ = 0;
 };
 

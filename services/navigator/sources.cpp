@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/file_kind.hpp"
 #include "common/io/udp_receiver.hpp"
 #include "services/navigator/io/gpsd_client.hpp"
 #include "services/navigator/io/serial_port.hpp"
@@ -29,6 +30,7 @@ constexpr int kMaxPieces = 64;
 std::vector<TextLogPlayer::Log> LogsOf(const Params& params) {
   std::vector<TextLogPlayer::Log> logs;
   for (const auto& connection : params.connections) {
+    if (const auto reason = io::WhyNot(connection.file, io::Wanted::kTextLog); !reason.empty()) throw std::runtime_error(reason);
     if (!IsTextLog(connection.file)) throw std::runtime_error("text log " + connection.file.string() + ": holds no sentence of NMEA 0183");
     logs.push_back({connection.name, connection.file, connection.day});
   }

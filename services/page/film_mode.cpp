@@ -2,13 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string_view>
 #include <thread>
 
+#include "common/bus/log_file.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
+#include "common/io/file_kind.hpp"
 #include "common/io/network.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/process.hpp"
@@ -43,12 +47,30 @@ struct FilmRequest {
   std::string map_file;
 };
 
+// The files that hold an event. One that is empty (a recorder whose power failed) does not keep the others from being shown.
+// @throws std::runtime_error for what is no lcm-log, and where no file is left
+std::vector<std::filesystem::path> LogsOf(const std::vector<std::string>& files) {
+  std::vector<std::filesystem::path> logs;
+  std::string without_event;
+  for (const auto& file : files) {
+    bus::LogReader reader(file, io::ThrowIfStopAsked);
+    if (reader.NextHead([](std::string_view) { return 0; })) {
+      logs.emplace_back(file);
+      continue;
+    }
+    without_event = io::NoEventText(file);
+    if (files.size() > 1) std::cerr << "lookout-page: " << PrintableLines(without_event) + "; it is left out\n";
+  }
+  if (logs.empty() && !files.empty()) throw std::runtime_error(without_event);
+  return logs;
+}
+
 int Show(const FilmRequest& request) {
   // Declared in this order: the server ends first, then the film, whose thread may still tell.
   ServerLink link;
   FilmOptions options;
-  options.logs.assign(request.logs.begin(), request.logs.end());
-  options.beside.assign(request.beside.begin(), request.beside.end());
+  options.logs = LogsOf(request.logs);
+  options.beside = LogsOf(request.beside);
   options.on_indexing = [&link](int source, double share) { link.With([&](Server& server) { server.TellIndexing(source, share); }); };
   options.on_sources = [&link] { link.With([](Server& server) { server.TellSources(); }); };
   options.tell = [](const std::string& line) { std::cerr << "lookout-page: " + PrintableLines(line) + "\n"; };

@@ -1,4 +1,5 @@
 // Writes seeds for the fuzz targets, a folder for each: what real inputs look like, so that no time goes into guessing that.
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
+#include "common/bus/log_file.hpp"
 #include "common/bus/schema.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "tests/fuzz/packet_script.hpp"
@@ -303,6 +305,32 @@ void WriteCaptures(const Folder& folder) {
   folder.Write("raw.pcap", Pcap(101, {frames[7].second, frames[8].second}));
   folder.Write("ethernet.pcapng", Pcapng(1, {in_ethernet(data), in_ethernet(position), ethernet}));
   folder.Write("raw.pcapng", Pcapng(101, {Ipv4(small), Ipv6(small)}));
+  // Another interface, with nanoseconds and an offset, and a packet of it.
+  const Payload options =
+      LittleEndian(9, 2) + LittleEndian(1, 2) + LittleEndian(9, 4) + LittleEndian(14, 2) + LittleEndian(8, 2) + LittleEndian(60, 8);
+  const Payload& of_null = frames[6].second;
+  folder.Write("two_link_types.pcapng", Pcapng(1, {ethernet}) + PcapngBlock(1, LittleEndian(0, 4) + LittleEndian(2000, 4) + options) +
+                                            PcapngBlock(6, LittleEndian(1, 4) + LittleEndian(0x65315, 4) + LittleEndian(1327, 4) +
+                                                               LittleEndian(of_null.size(), 4) + LittleEndian(of_null.size(), 4) + of_null));
+}
+
+// --- Logs ---
+
+// Every message that has a channel of its own, one after the other, and the log once more, with numbers that begin anew.
+void WriteLogs(const Folder& folder) {
+  Payload log;
+  std::int64_t number = 0;
+  ForEachFilledMessage([&](const auto& message) {
+    const std::string_view type = message.getTypeName();
+    for (const auto& channel : bus::kChannels) {
+      if (channel.type == type) bus::AppendLogEvent(log, number++, Utime(std::chrono::seconds(1'780'000'000)), channel.name, bus::Encode(message));
+    }
+  });
+  folder.Write("log", log);
+  folder.Write("begins_anew", log + log);
+  Payload small;
+  for (int i = 0; i < 5; ++i) bus::AppendLogEvent(small, 0, Utime(std::chrono::seconds(i)), "CHANNEL", Payload(10));
+  folder.Write("small", small);
 }
 
 // --- Messages ---
@@ -454,6 +482,7 @@ int main(int argc, char** argv) try {
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
   WriteAnswers(Folder(root / "fuzz_plotter"));
   WriteCaptures(Folder(root / "fuzz_capture"));
+  WriteLogs(Folder(root / "fuzz_log"));
   WriteMessages(Folder(root / "fuzz_message"));
   WritePairsOfMessages(Folder(root / "fuzz_message_diff"));
   WriteScans(Folder(root / "fuzz_segmenter"));

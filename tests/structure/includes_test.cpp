@@ -74,7 +74,7 @@ const std::vector<Rule>& Rules() {
   static const std::vector<Rule> kRules{
       {"common/core/.*", {"common/core"}},
       {"common/io/.*", {"common/core", "common/io", "socket"}},
-      {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
+      {"common/bus/.*", {"common/core", "common/bus", "common/io", "lcm", "openssl", "socket"}},
       {"common/messages/.*", {"common/core", "common/messages", "wire types"}},
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf", "fmt"}},
       {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},

@@ -17,6 +17,7 @@
 #include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
 #include "common/runtime/progress.hpp"
+#include "common/io/file_kind.hpp"
 #include "tools/log/publishers.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/log/watch_alerts.hpp"
@@ -52,14 +53,13 @@ struct IndexedLog {
         ++num_watch_alerts;
         continue;
       }
-      const auto size = static_cast<std::int64_t>(bus::kLogEventHeaderBytes + event->channel.size() + event->bytes.size());
-      places[event->channel].push_back(reader.position_bytes() - size);
+      places[event->channel].push_back(event->position_bytes);
       marks.Add(event->time, event->channel, event->bytes);
       publishers.Add(number, event->time, event->channel, event->bytes);
       if (!first_time) first_time = event->time;
     }
     num_damaged = reader.num_damaged();
-    if (places.empty() && reader.size_bytes() > 0) throw std::runtime_error(file.string() + ": is no lcm-log: it holds no event");
+    if (places.empty() && num_watch_alerts == 0 && reader.size_bytes() > 0) throw std::runtime_error(io::NoEventText(file));
   }
 
   bus::LogEvent Read(std::int64_t place) {
@@ -101,6 +101,7 @@ class ChannelComparison {
       const auto event_a = a_.Read(0);
       const auto event_b = b_.Read(0);
       auto difference = CompareMessages(tolerances_, event_a.bytes, event_b.bytes);
+      if (!difference) difference = CompareRests(event_a, event_b);
       if (difference && StepOverMissing(event_a, event_b)) continue;
       if (difference) {
         ++result_.num_different;
@@ -129,6 +130,25 @@ class ChannelComparison {
     const std::vector<std::int64_t>* places = nullptr;
     std::size_t next = 0;
   };
+
+  // Of events that are larger than what is read at once.
+  std::optional<Difference> CompareRests(const bus::LogEvent& a, const bus::LogEvent& b) const {
+    if (a.num_data_bytes != b.num_data_bytes) return Difference{"size", std::to_string(a.num_data_bytes), std::to_string(b.num_data_bytes)};
+    constexpr std::size_t kPieceBytes = 1024UL * 1024;
+    std::vector<std::uint8_t> piece_a;
+    std::vector<std::uint8_t> piece_b;
+    for (auto offset = a.bytes.size(); offset < a.num_data_bytes; offset += piece_a.size()) {
+      piece_a.resize(std::min(kPieceBytes, a.num_data_bytes - offset));
+      piece_b.resize(piece_a.size());
+      a_.log.reader.ReadData(a.position_bytes, a.channel.size(), offset, piece_a);
+      b_.log.reader.ReadData(b.position_bytes, b.channel.size(), offset, piece_b);
+      const auto found = std::ranges::mismatch(piece_a, piece_b);
+      if (found.in1 == piece_a.end()) continue;
+      return Difference{fmt::format("byte {}", offset + static_cast<std::size_t>(found.in1 - piece_a.begin())), std::to_string(*found.in1),
+                        std::to_string(*found.in2)};
+    }
+    return std::nullopt;
+  }
 
   static bool IsSameMessage(const bus::LogEvent& a, const bus::LogEvent& b) {
     const auto header_a = bus::ReadHeader(a.bytes);
@@ -253,6 +273,7 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
   IndexedLog b(request.b, [&](std::int64_t done_bytes) { show_read(size_a + done_bytes); });
   progress.Clear();
   for (const auto& [log, file] : {std::pair(&a, &request.a), std::pair(&b, &request.b)}) {
+    if (log->reader.size_bytes() == 0) errors << fmt::format("{}: is empty\n", file->string());
     if (log->num_damaged > 0) errors << fmt::format("{}: {} damaged stretches were skipped\n", file->string(), log->num_damaged);
   }
   std::set<std::string> channels;

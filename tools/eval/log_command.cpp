@@ -16,6 +16,7 @@
 #include "common/config/boat.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
+#include "common/io/file_kind.hpp"
 #include "tools/eval/report.hpp"
 #include "tools/eval/track_command.hpp"
 #include "tools/eval/track_run.hpp"
@@ -74,7 +75,9 @@ int EvaluateLog(const LogOptions& options) {
   std::optional<config::BoatFacts> boat;
   std::int64_t num_unusable = 0;
   runtime::Progress progress("lookout-eval", runtime::OnlyTerminal(stderr));
+  bool holds_events = false;
   while (const auto event = reader.Next()) {
+    holds_events = true;
     io::ThrowIfStopAsked();
     progress.Update(static_cast<double>(reader.position_bytes()) / static_cast<double>(reader.size_bytes()));
     bool is_taken = true;
@@ -104,6 +107,7 @@ int EvaluateLog(const LogOptions& options) {
   }
   collector.Finish();
   progress.Clear();
+  if (!holds_events) throw std::runtime_error(io::NoEventText(options.log_file));
   if (const auto fault = match ? match->Fault(options.log_file, options.truth_folder) : ""; !fault.empty()) throw std::runtime_error(fault);
   if (evaluation.num_scans == 0) {
     std::cerr << options.log_file << ": no scan of OBSTACLES\n";

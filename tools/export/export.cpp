@@ -17,6 +17,7 @@
 #include "common/config/text_config.hpp"
 #include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
+#include "common/io/file_kind.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
@@ -225,6 +226,7 @@ int Export(const Request& request, std::ostream& errors) {
       {.force = request.force, .inputs = request.inputs, .tell = [&errors](const std::string& line) { errors << kProgram << line << '\n'; }});
   std::string text;
   PlacedRows placed(request);
+  bool holds_events = false;
   runtime::Progress progress("lookout-export", ProgressOf(request));
   std::int64_t total_bytes = 1;
   for (const auto& reader : readers) total_bytes += reader->size_bytes();
@@ -232,6 +234,7 @@ int Export(const Request& request, std::ostream& errors) {
   for (std::size_t i = 0; i < readers.size(); ++i) {
     while (const auto event = sink->IsDone() ? std::nullopt : readers[i]->Next()) {
       io::ThrowIfStopAsked();
+      holds_events = true;
       progress.Update(static_cast<double>(done_bytes + readers[i]->position_bytes()) / static_cast<double>(total_bytes));
       const auto tally = std::ranges::find(tallies, event->channel, [](const Tally& one) { return one.channel.name; });
       if (!span.Holds(event->bytes)) continue;
@@ -256,6 +259,7 @@ int Export(const Request& request, std::ostream& errors) {
     errors << kProgram << request.inputs[i].string() << ": " << num_damaged << " damaged stretches skipped\n";
   }
   progress.Clear();
+  if (!holds_events) throw std::runtime_error(io::NoEventText(request.inputs.front()));
   if (tallies.front().num_taken > 0) sink->Finish(text);
   Tell(errors, *sink, tallies);
   const auto why = placed.Remark();

@@ -13,6 +13,7 @@
 #include "common/bus/decode.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
+#include "common/io/file_kind.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/run_info.hpp"
 #include "common/runtime/version.hpp"
@@ -42,7 +43,7 @@ Options ParseOptions(int argc, char** argv) {
       "of its ferry.",
       "lookout-import");
   app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files, for RUN_INFO")->required()->check(CLI::ExistingDirectory);
-  app.add_option("--in", options.input, "recording")->required()->check(CLI::ExistingFile);
+  app.add_option("--in", options.input, "recording")->required()->check(CLI::ExistingPath);
   app.add_option("--out", options.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused")->required();
   app.add_flag("--force", options.force, "replace an existing --out");
   app.set_version_flag("--version", "lookout-import " + runtime::Version());
@@ -65,6 +66,7 @@ void Import(const Options& options) {
   log::LogOutput output(options.output, {.force = options.force, .inputs = std::move(inputs), .tell = [](const std::string& line) {
                                            std::cerr << "lookout-import: " << line << '\n';
                                          }});
+  if (const auto reason = io::WhyNot(options.input, io::Wanted::kDetections); !reason.empty()) throw std::runtime_error(reason);
   if (!importer::IsFerryScans(options.input)) {
     throw std::runtime_error(options.input.string() +
                              ": is no recording that is known here: lidar detections of Autoferry (scenarioN_lidar_detections.json)");

@@ -61,11 +61,23 @@ class EventReader {
     io::ThrowIfStopAsked();
     const auto expected_bytes = reader_.position_bytes();
     auto event = reader_.Next();
-    auto start_bytes = reader_.position_bytes();  // at the end: of the file
-    if (event) start_bytes -= static_cast<std::int64_t>(bus::kLogEventHeaderBytes + event->channel.size() + event->bytes.size());
+    const auto start_bytes = event ? event->position_bytes : reader_.position_bytes();  // at the end: of the file
     if (start_bytes > expected_bytes) damage_.push_back({expected_bytes, start_bytes - expected_bytes, num_events_});
     if (event) ++num_events_;
     return event;
+  }
+
+  /// Of an event that is larger than bus::kMaxLogDataBytes: hands on what Next did not give, piece by piece.
+  template <typename Take>
+  void ReadRest(const bus::LogEvent& event, const Take& take) const {
+    constexpr std::size_t kPieceBytes = 1024UL * 1024;
+    std::vector<std::uint8_t> piece;
+    for (auto offset = event.bytes.size(); offset < event.num_data_bytes; offset += piece.size()) {
+      io::ThrowIfStopAsked();
+      piece.resize(std::min(kPieceBytes, event.num_data_bytes - offset));
+      reader_.ReadData(event.position_bytes, event.channel.size(), offset, piece);
+      take(Bytes(piece));
+    }
   }
 
   std::int64_t position_bytes() const { return reader_.position_bytes(); }

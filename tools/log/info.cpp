@@ -13,9 +13,11 @@
 #include "common/bus/sequence.hpp"
 #include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
+#include "common/io/file_kind.hpp"
 #include "lookout/run_info_t.hpp"
 #include "tools/log/commands.hpp"
 #include "tools/log/event_reader.hpp"
+#include "tools/log/payloads.hpp"
 #include "tools/log/publishers.hpp"
 #include "tools/log/run_marks.hpp"
 
@@ -90,6 +92,7 @@ class LogSummary {
     ++num_events_;
     if (const auto run_info = RunInfoOf(event)) AddRun(*run_info);
     marks_.Add(event.time, event.channel, event.bytes);
+    payloads_.Add(num_events_ - 1, event);
     const auto decision = publishers_.Add(num_events_ - 1, event.time, event.channel, event.bytes);
     AddToChannel(event, decision ? std::optional(decision->num_lost) : std::nullopt);
   }
@@ -97,6 +100,7 @@ class LogSummary {
   bool is_empty() const { return num_events_ == 0; }
 
   void Print(std::ostream& out) {
+    payloads_.Print(out);
     out << fmt::format("{:<9} {}\n", "events", num_events_);
     out << fmt::format("{:<9} {}\n{:<9} {}\n{:<9} {}\n", "start", TimeText(*first_), "end", TimeText(*last_), "span", SecondsText(*last_ - *first_));
     if (num_steps_back_ > 0) out << fmt::format("{:<9} {} times the clock of the recording went back\n", "clock", num_steps_back_);
@@ -161,7 +165,7 @@ class LogSummary {
     }
     channel.last = event.time;
     ++channel.num_events;
-    channel.num_bytes += static_cast<std::int64_t>(event.bytes.size());
+    channel.num_bytes += static_cast<std::int64_t>(event.num_data_bytes);
     if (event.bytes.size() < 8) return;
     const auto fingerprint = bus::ReadU64BigEndian(event.bytes, 0);
     const auto* type = FindType(fingerprint);
@@ -175,6 +179,7 @@ class LogSummary {
   }
 
   RunMarks marks_;
+  Payloads payloads_;
   Publishers publishers_;
   std::vector<std::string> runs_;
   std::vector<std::string> machines_;
@@ -213,7 +218,7 @@ void Info(const std::vector<std::filesystem::path>& files, std::ostream& out, st
     out << fmt::format("{:<9} {}\n{:<9} {} bytes\n", "file", PrintableLines(file.string()), "size", reader.size_bytes());
     PrintDamage(reader, out);
   }
-  if (summary.is_empty()) throw std::runtime_error(files.front().string() + ": is no lcm-log: it holds no event");
+  if (summary.is_empty()) throw std::runtime_error(io::NoEventText(files.front()));
   summary.Print(out);
 }
 

@@ -20,7 +20,14 @@ class LogOutput {
     writer_.Write(time, channel, bytes);
     ++num_events_;
   }
-  void Write(const bus::LogEvent& event) { Write(event.time, event.channel, event.bytes); }
+
+  /// The beginning of an event, or all of it, with the number that it has. @throws as Write
+  void WriteNumbered(std::int64_t number, Utime time, std::string_view channel, Bytes bytes, std::size_t num_data_bytes) {
+    writer_.WriteNumbered(number, time, channel, bytes, num_data_bytes);
+    ++num_events_;
+  }
+  /// Goes on with it. @throws as Write
+  void Append(Bytes bytes) { writer_.Append(bytes); }
 
   /// @throws std::runtime_error when it cannot be put in its place
   void Commit() {
@@ -32,6 +39,7 @@ class LogOutput {
   bool IsStandardOutput() const { return file_.IsStandardOutput(); }
 
   std::int64_t num_events() const { return num_events_; }
+  std::int64_t next_number() const { return writer_.next_number(); }
 
  private:
   io::OutputFile file_;

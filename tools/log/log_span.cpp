@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "common/bus/log_file.hpp"
+#include "common/io/file_kind.hpp"
 #include "common/io/stop_signal.hpp"
 
 namespace lookout::log {
@@ -45,7 +46,7 @@ LogSpan SpanOf(const std::vector<std::filesystem::path>& files) {
     if (!span) span = {*first, last};
     span->end = std::max(span->end, last);
   }
-  if (!span) throw std::runtime_error(files.front().string() + ": is no lcm-log: it holds no event");
+  if (!span) throw std::runtime_error(io::NoEventText(files.front()));
   return *span;
 }
 

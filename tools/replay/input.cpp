@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <numeric>
@@ -16,6 +15,7 @@
 
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/io/file_kind.hpp"
 #include "common/io/stop_signal.hpp"
 #include "services/navigator/io/text_log_reader.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
@@ -26,12 +26,6 @@ namespace lookout::replay {
 namespace {
 
 namespace fs = std::filesystem;
-using Magic = std::array<unsigned char, 4>;
-
-constexpr Magic kLogSyncWord{0xED, 0xA1, 0xDA, 0x01};
-// pcap with microseconds and with nanoseconds, in both byte orders, and pcapng.
-constexpr std::array<Magic, 5> kCaptureMagics{
-    {{0xA1, 0xB2, 0xC3, 0xD4}, {0xD4, 0xC3, 0xB2, 0xA1}, {0xA1, 0xB2, 0x3C, 0x4D}, {0x4D, 0x3C, 0xB2, 0xA1}, {0x0A, 0x0D, 0x0D, 0x0A}}};
 
 void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, std::string_view reason, std::int64_t count) {
   if (count == 0) return;
@@ -123,16 +117,12 @@ class Feeder {
   }
 
   void FeedCapture(const fs::path& file) {
-    // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
-    constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
     vlp16::CaptureReader reader(file);
-    std::size_t num_bytes = 0;
     while (const auto datagram = reader.Next()) {
       CheckOrder(file, datagram->host_time);
       ++summary_.num_events;
       chain_.OnDatagram({datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port}});
-      num_bytes += kFrameBytes + datagram->payload.size();
-      Show(static_cast<std::int64_t>(num_bytes));
+      Show(reader.position_bytes());
     }
     if (reader.num_damaged() > 0) Warn("{}: {}", file.string(), reader.damage());
     for (const auto& counter : reader.counters()) {
@@ -196,15 +186,12 @@ void Look(const std::filesystem::path& file, const std::set<std::string, std::le
 }  // namespace
 
 InputKind KindOf(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": is not a file that can be read twice");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(file.string() + ": cannot be read");
-  if (in.peek() == std::ifstream::traits_type::eof()) throw std::runtime_error(file.string() + ": is empty");
-  Magic start{};
-  in.read(reinterpret_cast<char*>(start.data()), start.size());
-  if (std::ranges::find(kCaptureMagics, start) != kCaptureMagics.end()) return InputKind::kCapture;
+  if (const auto reason = io::WhyNot(file, io::Wanted::kRecording); !reason.empty()) throw std::runtime_error(reason);
+  const auto kind = io::FileKindOf(file);
+  if (io::WhyNot(file, io::Wanted::kCapture).empty() && kind != io::FileKind::kUnknown) return InputKind::kCapture;
+  if (kind == io::FileKind::kLcmLog) return InputKind::kLog;
   // A log may be damaged at its start.
-  if (start == kLogSyncWord || bus::LogReader(file, io::ThrowIfStopAsked).Next()) return InputKind::kLog;
+  if ((kind == io::FileKind::kUnknown || kind == io::FileKind::kText) && bus::LogReader(file, io::ThrowIfStopAsked).Next()) return InputKind::kLog;
   // Last: sentences stand in captures and logs too.
   return navigator::IsTextLog(file) ? InputKind::kTextLog : InputKind::kCapture;
 }

@@ -23,7 +23,7 @@ enum class InputKind { kCapture, kTextLog, kLog };
 /// @return by content: what begins as a capture is one, what holds an event of LCM is a log, of all else what navigator::IsTextLog says is a text
 /// log, and the rest is
 ///         left to libpcap
-/// @throws std::runtime_error when the file cannot be read, is empty or holds nothing but zero bytes
+/// @throws std::runtime_error when the file is no file, cannot be read, is empty, or is plainly of another kind (io::WhyNot)
 InputKind KindOf(const std::filesystem::path& file);
 
 /// What is to be done with these files.

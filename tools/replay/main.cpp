@@ -59,7 +59,7 @@ Options ParseOptions(int argc, char** argv) {
                "lookout-replay");
   app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
-  app.add_option("--in", options.inputs, "pcap, pcapng, text log of NMEA 0183 or lcm-log; several are read in their order")->check(CLI::ExistingFile);
+  app.add_option("--in", options.inputs, "pcap, pcapng, text log of NMEA 0183 or lcm-log; several are read in their order")->check(CLI::ExistingPath);
   app.add_option("--out", options.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused");
   app.add_flag("--force", options.force, "replace an existing --out");
   app.add_option("--from", options.request.from,

@@ -6,10 +6,12 @@
 #include <deque>
 #include <mutex>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "common/bus/decode.hpp"
+#include "common/io/file_kind.hpp"
 #include "lookout/run_info_t.hpp"
 #include "services/page/core/replies.hpp"
 #include "services/page/film/boat_text.hpp"
@@ -34,6 +36,13 @@ std::string NameOf(const std::vector<fs::path>& logs) {
   return name;
 }
 
+// What is a file, but no log, is left out later, and told.
+std::int64_t SizeOf(const fs::path& log) {
+  std::error_code error;
+  if (!fs::is_regular_file(log, error)) throw std::runtime_error(io::WhyNot(log, io::Wanted::kLog));
+  return static_cast<std::int64_t>(fs::file_size(log));
+}
+
 }  // namespace
 
 struct Film::Implementation {
@@ -52,7 +61,7 @@ struct Film::Implementation {
       source.logs = logs;
       source.facts = {
           .id = static_cast<int>(sources.size()) - 1, .name = NameOf(logs), .is_growing = false, .is_indexed = false, .boat_text = "null"};
-      for (const auto& log : logs) source.sizes_bytes.push_back(bus::LogReader(log).size_bytes());  // throws where there is none
+      for (const auto& log : logs) source.sizes_bytes.push_back(SizeOf(log));
     }
     UpdateSourcesText();
     thread = std::thread([this] { MakeIndices(); });
@@ -108,6 +117,9 @@ struct Film::Implementation {
       } catch (const std::exception& error) {
         if (options.tell) options.tell(log.string() + " is left out: " + error.what());
       }
+    }
+    if (!parts.empty() && source.recording.timeline().is_empty() && options.tell) {
+      options.tell(source.facts.name + " holds no message of Lookout that a page can show (lookout-log info FILE tells its channels)");
     }
     if (const auto info = bus::Decode<run_info_t>(source.recording.RunInfo())) source.facts.boat_text = BoatTextOf(*info);
     source.facts.is_indexed = true;

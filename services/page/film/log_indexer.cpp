@@ -165,7 +165,8 @@ void LogIndexer::OnEvent(const bus::LogEventView& event, Utime time, LogPart& pa
   const bool is_tracks = event.channel == bus::kTracks.name;
   const bool has_end = HasEnd(event.channel);
   const std::size_t least_bytes = is_tracks ? kHeadBytes - 4 : part_offset > 0 ? part_offset + 8 : has_end ? kEndUtimeOffset + 8 : 24;
-  if (!header || header->fingerprint != FingerprintsOfChannels()[*channel] || event.bytes.size() < least_bytes || !UtimeFromWire(header->utime_us)) {
+  if (!header || header->fingerprint != FingerprintsOfChannels()[*channel] || event.bytes.size() < least_bytes ||
+      event.num_data_bytes > bus::kMaxLogDataBytes || !UtimeFromWire(header->utime_us)) {
     return Refuse(*channel, time, part);
   }
   Parts parts;

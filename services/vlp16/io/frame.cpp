@@ -38,10 +38,14 @@ std::string AddressText(int family, Bytes address) {
 // What is short is short because the capture cut it, or because a length lies.
 FrameFault Short(bool is_cut) { return is_cut ? FrameFault::kTruncated : FrameFault::kBadLength; }
 
-Frame ParseUdp(Bytes bytes, std::string source_address) {
-  if (bytes.size() < kUdpHeaderSizeBytes) return Refused(FrameFault::kBadLength);
+// `bytes`: what was captured behind the IP header, with what pads the frame. `ip_size`: of the datagram, as the IP header says: it tells what is
+// wrong with a datagram that is not whole, and no more.
+Frame ParseUdp(Bytes bytes, std::size_t ip_size, bool is_cut, std::string source_address) {
+  const auto fault = ip_size > bytes.size() ? Short(is_cut) : FrameFault::kBadLength;
+  if (bytes.size() < kUdpHeaderSizeBytes) return Refused(fault);
   const auto size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 4));
-  if (size < kUdpHeaderSizeBytes || size > bytes.size()) return Refused(FrameFault::kBadLength);
+  if (size < kUdpHeaderSizeBytes) return Refused(FrameFault::kBadLength);
+  if (size > bytes.size()) return Refused(fault);
   return {FrameFault::kNone, std::move(source_address), ReadU16BigEndian(bytes, 0), ReadU16BigEndian(bytes, 2),
           bytes.subspan(kUdpHeaderSizeBytes, size - kUdpHeaderSizeBytes)};
 }
@@ -52,12 +56,11 @@ Frame ParseIpv4(Bytes bytes, bool is_cut) {
   const std::size_t header_size = 4U * (bytes[0] & 0x0FU);  // with options
   const auto total_size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 2));
   if (bytes[0] >> 4 != 4 || header_size < kMinHeaderSizeBytes) return Refused(FrameFault::kBadIpHeader);
-  if (total_size < header_size) return Refused(FrameFault::kBadLength);
   constexpr int kMoreFragmentsAndOffset = 0x3FFF;
   if ((ReadU16BigEndian(bytes, 6) & kMoreFragmentsAndOffset) != 0) return Refused(FrameFault::kFragment);
   if (bytes[9] != kProtocolUdp) return Refused(FrameFault::kNotUdp);
-  if (total_size > bytes.size()) return Refused(Short(is_cut));
-  return ParseUdp(bytes.subspan(header_size, total_size - header_size), AddressText(AF_INET, bytes.subspan(12, 4)));
+  if (header_size > bytes.size()) return Refused(Short(is_cut));
+  return ParseUdp(bytes.subspan(header_size), total_size - std::min(total_size, header_size), is_cut, AddressText(AF_INET, bytes.subspan(12, 4)));
 }
 
 Frame ParseIpv6(Bytes bytes, bool is_cut) {
@@ -68,8 +71,7 @@ Frame ParseIpv6(Bytes bytes, bool is_cut) {
   if (std::ranges::find(kProtocolsIpv6Extension, protocol) != kProtocolsIpv6Extension.end()) return Refused(FrameFault::kIpv6Extension);
   if (protocol != kProtocolUdp) return Refused(FrameFault::kNotUdp);
   const auto payload_size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 4));
-  if (payload_size > bytes.size() - kIpv6HeaderSizeBytes) return Refused(Short(is_cut));
-  return ParseUdp(bytes.subspan(kIpv6HeaderSizeBytes, payload_size), AddressText(AF_INET6, bytes.subspan(8, 16)));
+  return ParseUdp(bytes.subspan(kIpv6HeaderSizeBytes), payload_size, is_cut, AddressText(AF_INET6, bytes.subspan(8, 16)));
 }
 
 Frame ParseIp(Bytes bytes, bool is_cut) {
@@ -117,6 +119,7 @@ bool IsLinkTypeUnderstood(int link_type) {
 }
 
 Frame ParseFrame(int link_type, Bytes bytes, bool is_cut) {
+  if (!IsLinkTypeUnderstood(link_type)) return Refused(FrameFault::kLinkType);
   switch (link_type) {
     case DLT_EN10MB:
       return ParseEthertype(bytes, 12, 14, is_cut);

@@ -26,10 +26,11 @@ enum class FrameFault {
   kIpv6Extension,  // IPv6 with extension headers
   kBadIpHeader,    // version or header length that cannot be
   kBadLength,      // a length that goes beyond the bytes that hold it
+  kLinkType,       // of an interface whose link type is not understood, beside others that are
 };
-inline constexpr std::array<std::string_view, 8> kFrameFaultNames{"frames_datagram",      "frames_truncated", "frames_not_ip",
-                                                                  "frames_not_udp",       "frames_fragment",  "frames_ipv6_extension",
-                                                                  "frames_bad_ip_header", "frames_bad_length"};
+inline constexpr std::array<std::string_view, 9> kFrameFaultNames{"frames_datagram",      "frames_truncated",  "frames_not_ip",
+                                                                  "frames_not_udp",       "frames_fragment",   "frames_ipv6_extension",
+                                                                  "frames_bad_ip_header", "frames_bad_length", "frames_link_type"};
 
 struct Frame {
   FrameFault fault = FrameFault::kNone;  // the rest is set when it is kNone
@@ -45,10 +46,11 @@ using CaptureHandle = std::unique_ptr<pcap, void (*)(pcap*)>;
 /// Link types that are understood, by libpcap's DLT numbers: Ethernet (also VLAN-tagged, stacked), Linux cooked v1, v2, raw IP, BSD loopback.
 bool IsLinkTypeUnderstood(int link_type);
 
-/// @param link_type  DLT number; IsLinkTypeUnderstood
+/// @param link_type  DLT number; of one that is not IsLinkTypeUnderstood the fault is kLinkType
 /// @param bytes      as captured
 /// @param is_cut     the frame was longer on the wire than in the capture
 ///
+/// The length that UDP says counts, where the captured bytes hold it: position packets of a real VLP-16 carry the IP length of a data packet.
 /// Checksums are not looked at: with checksum offload a capture holds wrong ones for good datagrams.
 /// Fragments are not put together: a data packet of the lidar fits into one frame.
 Frame ParseFrame(int link_type, Bytes bytes, bool is_cut);

@@ -209,6 +209,94 @@ TEST_F(LogFile, GivesTheBeginningOfWhatIsLarge) {
   EXPECT_EQ(reader.num_damaged(), 0);
 }
 
+// A camera's image on the same bus: an event of 20 MB was skipped as damage. LCM's format allows up to 2 GB.
+TEST_F(LogFile, PassesOverALargeEventAndGivesItsRestInPieces) {
+  constexpr std::size_t kLargeBytes = 40'000'003;
+  std::vector<std::uint8_t> large(kLargeBytes);
+  for (std::size_t i = 0; i < large.size(); ++i) large[i] = static_cast<std::uint8_t>(i % 251);
+  {
+    support::FileLog writer(file_);
+    writer.Write(Utime(std::chrono::microseconds(1)), "CHANNEL", Bytes(large).first(10));
+    writer.Write(Utime(std::chrono::microseconds(2)), "CAMERA", large);
+    writer.Write(Utime(std::chrono::microseconds(3)), "CHANNEL", Bytes(large).first(10));
+  }
+  LogReader passing(file_);
+  const auto is_wanted = [](std::string_view channel) { return channel == "CHANNEL"; };
+  EXPECT_EQ(passing.NextView(is_wanted)->bytes.size(), 10U);
+  EXPECT_EQ(passing.NextView(is_wanted)->num_data_bytes, kLargeBytes);
+  EXPECT_EQ(passing.NextView(is_wanted)->bytes.size(), 10U);
+  EXPECT_FALSE(passing.NextView(is_wanted));
+  EXPECT_EQ(passing.num_damaged(), 0);
+
+  LogReader reader(file_);
+  EXPECT_EQ(reader.Next()->num_data_bytes, 10U);
+  const auto event = reader.Next();
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->bytes.size(), kMaxLogDataBytes) << "no more is held";
+  EXPECT_EQ(event->num_data_bytes, kLargeBytes);
+  EXPECT_TRUE(std::ranges::equal(event->bytes, Bytes(large).first(kMaxLogDataBytes)));
+  std::vector<std::uint8_t> rest(kLargeBytes - kMaxLogDataBytes);
+  reader.ReadData(event->position_bytes, event->channel.size(), kMaxLogDataBytes, rest);
+  EXPECT_TRUE(std::ranges::equal(rest, Bytes(large).last(rest.size())));
+  EXPECT_TRUE(reader.Next());
+  EXPECT_FALSE(reader.Next());
+  EXPECT_EQ(reader.num_damaged(), 0);
+
+  // A damaged length of that size is told from it: events stand behind it.
+  auto text = Content();
+  text[24] = '\x01';  // the first event: 16 MB more
+  SetContent(text);
+  LogReader damaged(file_);
+  EXPECT_EQ(ToUtimeUs(damaged.Next()->time), 2);
+  EXPECT_EQ(ToUtimeUs(damaged.Next()->time), 3);
+  EXPECT_EQ(damaged.num_damaged(), 1);
+}
+
+TEST_F(LogFile, TellsTheNumbersOfItsEvents) {
+  std::vector<std::uint8_t> log;
+  for (const std::int64_t number : {5, 5, 0, -1}) AppendLogEvent(log, number, Utime(), "CHANNEL", {});
+  SetContent({log.begin(), log.end()});
+  LogReader reader(file_);
+  for (const std::int64_t number : {5, 5, 0, -1}) EXPECT_EQ(reader.Next()->number, number);
+}
+
+// A log that is packed, or none at all, was read through in vain.
+TEST_F(LogFile, SaysWhatAnotherKindOfFileIs) {
+  SetContent(std::string("\x1F\x8B\x08", 3));
+  try {
+    const LogReader reader(file_);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), file_.string() + ": is compressed by gzip, no lcm-log; unpack it first: gunzip -k " + file_.string());
+  }
+  EXPECT_THROW(LogReader{folder_.path()}, std::runtime_error);
+}
+
+// A damaged length of a log that grows is not waited for.
+TEST_F(LogFile, WaitsForALargeEventButNotForADamagedLength) {
+  std::vector<std::uint8_t> large(20'000'000, 7);
+  {
+    support::FileLog writer(file_);
+    writer.Write(Utime(std::chrono::microseconds(1)), "CAMERA", large);
+  }
+  const auto whole = Content();
+  const auto none = [](std::string_view) { return std::size_t{0}; };
+  SetContent(whole.substr(0, 1'000'000));
+  LogReader reader(file_);
+  EXPECT_FALSE(reader.NextHeadSoFar(none));
+  SetContent(whole);
+  reader.UpdateSize();
+  EXPECT_TRUE(reader.NextHeadSoFar(none));
+  EXPECT_EQ(reader.num_damaged(), 0);
+  WriteThree();
+  auto text = Content();
+  text[24] = '\x70';
+  SetContent(text);
+  LogReader damaged(file_);
+  EXPECT_EQ(ToUtimeUs(damaged.NextHeadSoFar(none)->time), 1001);
+  EXPECT_EQ(damaged.num_damaged(), 1);
+}
+
 // An event of which the writer has written a part is no damage: the rest comes.
 TEST_F(LogFile, WaitsForTheRestOfAnEventOfALogThatGrows) {
   WriteThree();

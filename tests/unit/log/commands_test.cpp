@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <lcm/eventlog.h>
+#include <limits>
 #include <sstream>
 
 #include "tests/unit/log/small_log.hpp"
@@ -311,6 +312,66 @@ TEST_F(LogCommands, RepairOfAWholeLogIsTheSameFile) {
   Repair(file, folder_ / "out", false, out_, errors_);
   EXPECT_EQ(Content(folder_ / "out"), Content(file));
   EXPECT_TRUE(Said("0 bytes lost in 0 stretches"));
+}
+
+// A recorder that appended, and a writer that gives each event the same number: a copy numbered them anew, and was another file.
+TEST_F(LogCommands, CopiesKeepTheNumbersOfEvents) {
+  const auto events = TwoMinutes();
+  const std::vector<std::vector<std::int64_t>> kinds{{0, 1, 2, 0, 1}, {0, 0, 0, 0}, {7}, {-3, std::numeric_limits<std::int64_t>::max(), 5}};
+  for (const auto& numbers : kinds) {
+    std::vector<std::uint8_t> log;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      bus::AppendLogEvent(log, numbers[i % numbers.size()], events[i].time, events[i].channel, events[i].bytes);
+    }
+    SetContent(folder_ / "log", {log.begin(), log.end()});
+    Repair(folder_ / "log", folder_ / "out", true, out_, errors_);
+    EXPECT_EQ(Content(folder_ / "out"), Content(folder_ / "log"));
+    auto request = Request(folder_ / "log");
+    Slice(request, out_, errors_);
+    EXPECT_EQ(Content(folder_ / "out"), Content(folder_ / "log"));
+    request.from = "0";
+    request.to = "60";
+    Slice(request, out_, errors_);
+    EXPECT_TRUE(Content(folder_ / "log").starts_with(Content(folder_ / "out"))) << "a slice of the beginning is the beginning";
+  }
+}
+
+// An image of a camera on the same bus is no damage.
+TEST_F(LogCommands, KeepLargeEventsOfOthers) {
+  std::vector<std::uint8_t> image(20'000'000);
+  for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<std::uint8_t>(i % 241);
+  const auto file = Write("log", {RunInfo(0), Event(start_, "CAMERA", image), Pose(1, 0)});
+  const auto text = InfoOf(file);
+  EXPECT_NE(text.find("damage    none\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("CAMERA               ?                          1     20000000"), std::string::npos) << text;
+  Repair(file, folder_ / "out", true, out_, errors_);
+  EXPECT_TRUE(Content(folder_ / "out") == Content(file));
+  Slice(Request(file), out_, errors_);
+  EXPECT_TRUE(Content(folder_ / "out") == Content(file));
+}
+
+// "damage none" stood beside messages in which replay found flipped bits.
+TEST_F(LogCommands, InfoTellsMessagesWhosePayloadIsNotWhole) {
+  pose_t pose{};
+  pose.utime_us = ToUtimeUs(start_);
+  const auto whole = Event(start_, "POSE", bus::Encode(pose));
+  auto flipped = whole;
+  flipped.bytes[3] ^= 0x10;  // its fingerprint
+  auto cut = whole;
+  cut.bytes.resize(cut.bytes.size() - 8);
+  auto packets = Packets(0, 0, lidar_packets_t::MARK_START);
+  auto bad_packets = packets;
+  bad_packets.bytes[24] ^= 0x40;  // marks that do not exist
+  EXPECT_NE(InfoOf(Write("sound", {packets, NavRaw(0, 0, nav_raw_t::KIND_START), Event(start_, "OTHER", {1})}))
+                .find("payloads  2 messages of known channels checked, nothing wrong; 1 of other channels are not looked into\n"),
+            std::string::npos);
+  const auto text = InfoOf(Write("log", {packets, flipped, bad_packets, cut, NavRaw(0, 1, 99), flipped}));
+  EXPECT_NE(text.find("damage    none\npayloads  6 messages of known channels checked, 5 are wrong\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("          2 POSE: of another type than the channel's; the first is event 1, 2027-01-15T08:00:00.000000Z\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("          1 POSE: do not decode; the first is event 3"), std::string::npos) << text;
+  EXPECT_NE(text.find("          1 NAV_RAW: nav_raw_bad_kind; the first is event 4"), std::string::npos) << text;
+  EXPECT_NE(text.find("          1 LIDAR_PACKETS: hold packets of the lidar that do not fill them"), std::string::npos) << text;
 }
 
 // Any stretch of noise at any place: never more is lost than the events that it touched.

@@ -1,5 +1,6 @@
 // Captures: frames of every link type, files that are whole, empty, damaged or no captures, and the recordings at hand.
 #include <unistd.h>
+#include <zlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -137,6 +138,26 @@ TEST(Frame, WithoutADatagramIsRefusedByReason) {
   EXPECT_EQ(fault(kRaw, ip), FrameFault::kBadLength);
 }
 
+// Position packets of a real VLP-16 carry the IP length of a data packet, 1234 bytes, in a frame of 554: they were refused.
+TEST(Frame, WithAWrongIpLengthIsReadByTheLengthThatUdpSays) {
+  for (const int ip_length : {0, 19, 29, 32, 1234, 65535}) {
+    Text ip = Ipv4(Udp(2368, kPayload));
+    ip[2] = static_cast<std::uint8_t>(ip_length >> 8);
+    ip[3] = static_cast<std::uint8_t>(ip_length);
+    ExpectDatagram(kRaw, ip);
+    ExpectDatagram(kEthernet, kMacs + Text{0x08, 0x00} + ip + Text(15, 0));
+    // What was captured does not hold it: as refused as ever.
+    const auto cut = Bytes(ip).first(ip.size() - 1);
+    if (ip_length > 32) {
+      EXPECT_EQ(ParseFrame(kRaw, cut, true).fault, FrameFault::kTruncated);
+    }
+    EXPECT_EQ(ParseFrame(kRaw, cut, false).fault, FrameFault::kBadLength);
+  }
+  Text ip = Ipv6(Udp(2368, kPayload));
+  ip[4] = 4;
+  ExpectDatagram(kRaw, ip, "fe80::1");
+}
+
 TEST(FrameCounts, HaveADatagramWithoutATimeByItself) {
   FrameCounts frames;
   EXPECT_TRUE(frames.Add({}, Utime()));
@@ -211,6 +232,49 @@ TEST(CaptureReader, GivesDatagramsWithTheirTimes) {
 TEST(CaptureReader, ReadsNanosecondCaptures) {
   const CaptureFile file(Header(1, 0xA1B23C4D) + Record(kFrame, 5, 123'456'789));
   EXPECT_EQ(ToUtimeUs(CaptureReader(file.path()).Next()->host_time), 5'123'456);
+}
+
+// The seconds have no sign: from January 2038 on they came as years before 1902, and up to 2106 they are right.
+TEST(CaptureReader, ReadsSecondsBeyond2038) {
+  for (const std::uint32_t second : {0x7FFF'FFFFU, 0x8000'0000U, 2'177'488'800U, 0xFFFF'FFFFU}) {
+    for (const std::uint32_t magic : {0xA1B2C3D4U, 0xA1B23C4DU}) {
+      const CaptureFile file(Header(1, magic) + Record(kFrame, second, 7000));
+      const auto datagram = CaptureReader(file.path()).Next();
+      ASSERT_TRUE(datagram) << second;
+      EXPECT_EQ(ToUtimeUs(datagram->host_time), std::int64_t{second} * 1'000'000 + (magic == 0xA1B2C3D4U ? 7000 : 7));
+    }
+  }
+}
+
+TEST(CaptureReader, ReadsWhatGzipPacked) {
+  const Text whole = Header(1) + Record(kFrame, 1, 0) + Record(kFrame, 2, 0);
+  const CaptureFile file(whole);
+  const auto pack = [&file](const Text& bytes) {
+    const gzFile out = gzopen(file.path().c_str(), "wb");
+    gzwrite(out, bytes.data(), static_cast<unsigned int>(bytes.size()));
+    gzclose(out);
+  };
+  pack(whole);
+  {
+    CaptureReader reader(file.path());
+    EXPECT_EQ(ToUtimeUs(reader.Next()->host_time), 1'000'000);
+    EXPECT_EQ(ToUtimeUs(reader.Next()->host_time), 2'000'000);
+    EXPECT_FALSE(reader.Next());
+    EXPECT_EQ(reader.damage(), "");
+    EXPECT_EQ(reader.position_bytes(), static_cast<std::int64_t>(std::filesystem::file_size(file.path())));
+  }
+  pack(Text(whole.begin(), whole.end() - 5));  // the capture is cut
+  CaptureReader torn(file.path());
+  EXPECT_TRUE(torn.Next());
+  EXPECT_FALSE(torn.Next());
+  EXPECT_EQ(torn.num_damaged(), 1);
+  pack(whole);
+  std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) - 6);  // what is packed is cut
+  CaptureReader cut(file.path());
+  while (cut.Next()) continue;
+  EXPECT_EQ(cut.damage(), "what gzip packed is cut short, after 2 frames");
+  pack({'h', 'e', 'l', 'l', 'o'});
+  EXPECT_THROW(CaptureReader{file.path()}, std::runtime_error);
 }
 
 TEST(CaptureReader, ReadsEveryNumberOfRawIp) {
