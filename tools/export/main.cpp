@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/boat_folder.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/export/export.hpp"
@@ -52,7 +53,8 @@ int main(int argc, char** argv) {
   auto* to_option = app.add_option("--to", to, "the same; the first time that is not in it");
   auto* near_option =
       app.add_option("--near", near, "csv and maps of obstacles, tracks and pose: LATITUDE,LONGITUDE,RADIUS in degrees and metres: what lies within");
-  app.add_option("--config", request.config, "table merges: the boat's folder, by which LIDAR_SCAN is segmented again");
+  app.add_option("--config", request.config, "table merges: the boat's folder, by which LIDAR_SCAN is segmented again")
+      ->check(lookout::config::BoatFolderFault);
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
   app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line or config.");
   try {
