@@ -23,7 +23,7 @@ class InputWatch {
 
   std::string_view name() const { return name_; }
 
-  /// A message came that is no refused one.
+  /// A message came.
   void Note() { seen_ = now_; }
 
   /// Host time has come so far. Once a second or more.

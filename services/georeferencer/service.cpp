@@ -86,8 +86,8 @@ HealthReport Service::Report() const {
   poses_refused_.AppendTo(report.counters);
 
   if (const auto text = segments_watch_.Complaint(); !text.empty()) report.Degrade(text);
-  if (const auto text = pose_watch_.Complaint(); !text.empty()) {
-    report.Degrade(text);
+  if (pose_watch_.is_silent()) {
+    report.Degrade(pose_watch_.Complaint());
   } else {
     const auto status = newest_pose_status_.value_or(pose_t::STATUS_OK);
     if (const auto text = PoseText(status); !text.empty()) report.Degrade(text);
