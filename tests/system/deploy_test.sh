@@ -100,7 +100,7 @@ for name in recorder page plotter tracker georeferencer segmenter navigator vlp1
 done
 # It had 420 lines, with boat.txtpb once for each process.
 [ "$(wc -l <"$work/check.txt")" -le 40 ] || { cat "$work/check.txt"; fail "--check prints more than one can read"; }
-[ -z "$(sort "$work/check.txt" | uniq -d)" ] || fail "--check says something twice: $(sort "$work/check.txt" | uniq -d)"
+[ -z "$(grep '^# boat.txtpb: ' "$work/check.txt" | sort | uniq -d)" ] || { cat "$work/check.txt"; fail "--check tells twice of boat.txtpb"; }
 "$up" --config "$config" --check --values >"$work/values.txt" || fail "--check --values of the demo"
 for file in "$config"/*.txtpb; do
   [ "$(grep -c "^# ${file##*/}\$" "$work/values.txt")" -eq 1 ] || fail "--check --values does not print ${file##*/} once"
