@@ -45,8 +45,14 @@ class SequenceWatch {
 /// without parts counts as a scan.
 class WholeCount {
  public:
-  /// @param num_lost  messages that are missing before this one, by who knows the stream
+  /// @param part_index  -1 = not known: then only scans that are lost whole show
+  /// @param num_lost    messages that are missing before this one, by who knows the stream
   void Note(std::int64_t seq, std::int64_t part_index, std::int64_t num_parts, std::int64_t num_lost) {
+    if (part_index < 0) {
+      if (last_ && seq == last_->seq && num_lost == 0) return;  // of the same scan
+      part_index = 0;
+      num_parts = 1;
+    }
     if (last_ && seq == last_->seq) {
       if (num_lost > 0) Tear();
     } else {

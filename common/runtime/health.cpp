@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <string_view>
 #include <systemd/sd-daemon.h>
 #include <utility>
 #include <vector>
@@ -38,6 +39,7 @@ constexpr std::chrono::seconds kStartTime(3);
 
 // HEALTH tells for so long what was lost.
 constexpr std::chrono::seconds kLossTime(10);
+constexpr std::size_t kMostLosses = 3;  // channels that are named
 
 // Channels whose messages are parts of scans.
 bool IsInParts(std::string_view channel) {
@@ -99,19 +101,32 @@ std::string HealthReporter::LossText(std::chrono::steady_clock::time_point now, 
   for (const auto& [name, traffic] : bus.input_traffic()) inputs.whole_and_lost[name] = {traffic.scans.num_whole(), traffic.scans.num_lost()};
   inputs_.push_back(std::move(inputs));
   while (inputs_.size() > 2 && now - inputs_[1].time >= kLossTime) inputs_.pop_front();
-  std::string text;
+  struct Loss {
+    std::string_view name;
+    std::int64_t num_lost;
+    std::int64_t number;  // of those that should have come
+  };
+  std::vector<Loss> losses;
   for (const auto& [name, counts] : inputs_.back().whole_and_lost) {
-    const auto before = inputs_.front().whole_and_lost.find(name);
-    const auto [num_whole_before, num_lost_before] = before == inputs_.front().whole_and_lost.end() ? decltype(counts){} : before->second;
-    const auto num_lost = counts.second - num_lost_before;
-    if (num_lost <= 0) continue;
-    const auto number = std::to_string(num_lost) + " of " + std::to_string(counts.first - num_whole_before + num_lost);
-    text += (text.empty() ? "" : ", ") + number + (IsInParts(name) ? " scans of " : " messages of ") + name;
+    const auto found = inputs_.front().whole_and_lost.find(name);
+    const auto before = found == inputs_.front().whole_and_lost.end() ? std::pair<std::int64_t, std::int64_t>() : found->second;
+    const auto num_lost = counts.second - before.second;
+    if (num_lost > 0) losses.push_back({name, num_lost, counts.first - before.first + num_lost});
   }
-  if (text.empty()) return text;
+  if (losses.empty()) return {};
+  // What costs most first: scans, then by share. All of them would hide other reasons.
+  std::ranges::stable_sort(losses, {}, [](const Loss& loss) {
+    return std::pair(!IsInParts(loss.name), -static_cast<double>(loss.num_lost) / static_cast<double>(loss.number));
+  });
   const auto seconds = std::chrono::round<std::chrono::seconds>(now - inputs_.front().time).count();
-  return "lost on the bus in the last " + std::to_string(seconds) + " s: " + text +
-         " (receive buffers too small, or this computer too busy: lookout-doctor tells)";
+  std::string text = "lost on the bus in the last " + std::to_string(seconds) + " s:";
+  for (std::size_t i = 0; i < std::min(losses.size(), kMostLosses); ++i) {
+    const auto& [name, num_lost, number] = losses[i];
+    text += std::string(i == 0 ? " " : ", ") + std::to_string(num_lost) + " of " + std::to_string(number) +
+            (IsInParts(name) ? " scans of " : " messages of ") + std::string(name);
+  }
+  if (losses.size() > kMostLosses) text += " and some of " + std::to_string(losses.size() - kMostLosses) + " channels more";
+  return text + " (receive buffers too small, or this computer too busy: lookout-doctor tells)";
 }
 
 health_t HealthReporter::MakeBetween(Utime now, const HealthReport& report) {

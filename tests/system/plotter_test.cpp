@@ -85,7 +85,8 @@ class Plotter : public ::testing::Test {
     Start("out");
   }
   void Start(const std::string& output) {
-    child_ = std::make_unique<Child>(std::vector<std::string>{Bin("plotter"), "--config", (folder_ / "config").string()}, (folder_ / output).string());
+    child_ =
+        std::make_unique<Child>(std::vector<std::string>{Bin("plotter"), "--config", (folder_ / "config").string()}, (folder_ / output).string());
   }
 
   // A scan every 100 ms, until it is so.

@@ -94,6 +94,7 @@ struct LookBack::Implementation {
     std::optional<Utime> end;
     {
       const std::scoped_lock lock(mutex);
+      recording.CloseRemoved();
       if (!recording.timeline().is_empty()) end = recording.timeline().end();
     }
     if (std::exchange(end_told, end) != end && options.on_sources) options.on_sources();

@@ -43,9 +43,7 @@ TEST(SequenceWatch, SurvivesTheEndsOfTheRange) {
 TEST(WholeCount, CountsScansOfWhichSomethingIsMissing) {
   WholeCount count;
   SequenceWatch sequence;
-  const auto send = [&](std::int64_t seq, std::int64_t part_index) {
-    count.Note(seq, part_index, 3, sequence.NumLostBefore(seq, part_index, 3));
-  };
+  const auto send = [&](std::int64_t seq, std::int64_t part_index) { count.Note(seq, part_index, 3, sequence.NumLostBefore(seq, part_index, 3)); };
   const auto send_all = [&](std::int64_t seq) {
     for (int part_index = 0; part_index < 3; ++part_index) send(seq, part_index);
   };
@@ -72,6 +70,17 @@ TEST(WholeCount, CountsScansOfWhichSomethingIsMissing) {
   send_all(0);  // a new start
   EXPECT_EQ(count.num_lost(), 10);
   EXPECT_EQ(count.num_whole(), 4);
+}
+
+// As of ALERTS, and for the recorder, which does not decode.
+TEST(WholeCount, CountsNumbersWherePartsAreNotKnown) {
+  WholeCount count;
+  for (const std::int64_t seq : {0, 0, 1, 1, 1, 2}) count.Note(seq, -1, 1, 0);
+  EXPECT_EQ(count.num_whole(), 3);
+  count.Note(5, -1, 1, 2);
+  count.Note(5, -1, 1, 0);
+  EXPECT_EQ(count.num_whole(), 4);
+  EXPECT_EQ(count.num_lost(), 2);
 }
 
 TEST(WholeCount, CountsMessagesWhereThereAreNoParts) {

@@ -270,6 +270,34 @@ TEST_F(OfLookBack, HasNoFaultOfItsSpoolWhileItFollowsTheRecorder) {
   EXPECT_EQ(back.Status().fault, "");
 }
 
+// The disk was full, a log was deleted, and nothing became free: the page had it open.
+TEST_F(OfLookBack, LetsGoOfALogThatIsRemovedToMakeRoom) {
+  options_.recorder_folder = folder_ / "logs";
+  fs::create_directory(*options_.recorder_folder);
+  LookBack back(options_);
+  const auto file = *options_.recorder_folder / "20260101T000001Z.lcmlog";
+  auto log = std::make_unique<SceneLog>(file);
+  std::int64_t seq = 0;
+  ASSERT_TRUE(WaitUntil([&] {
+    (*log)->Scan(seq++);
+    log->Flush();
+    return back.Status().is_following;
+  }));
+  back.Flush();
+  log.reset();
+  ASSERT_TRUE(WaitUntil([&] { return !back.Status().is_following; }));
+  const auto is_open = [&] {
+    std::error_code gone;
+    return std::ranges::any_of(fs::directory_iterator("/proc/self/fd"), [&](const auto& entry) {
+      return fs::read_symlink(entry.path(), gone).string().find(file.filename().string()) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(is_open()) << "what was read can be shown";
+  fs::remove(file);
+  EXPECT_TRUE(WaitUntil([&] { return !is_open(); }));
+  EXPECT_TRUE(back.Find(AtScan(kBeginUs, {kScanChannel})).messages.empty());
+}
+
 // One that is removed, by hand or to make room, between its being seen and its being opened.
 TEST_F(OfLookBack, FollowsTheOtherLogsWhereOneIsTakenAway) {
   options_.recorder_folder = folder_ / "logs";
