@@ -6,7 +6,7 @@
 namespace lookout {
 namespace {
 
-Utime At_s(double seconds) { return Utime(std::chrono::microseconds(1'000'000'000 + static_cast<std::int64_t>(1e6 * seconds))); }
+Utime At_s(double time_s) { return Utime(std::chrono::microseconds(1'000'000'000 + static_cast<std::int64_t>(1e6 * time_s))); }
 
 TEST(InputWatch, SaysForHowLongNothingCame) {
   InputWatch watch("POSE");
