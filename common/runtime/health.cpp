@@ -125,7 +125,7 @@ std::string HealthReporter::LossText(std::chrono::steady_clock::time_point now, 
     text += std::string(i == 0 ? " " : ", ") + std::to_string(num_lost) + " of " + std::to_string(number) +
             (IsInParts(name) ? " scans of " : " messages of ") + std::string(name);
   }
-  if (losses.size() > kMostLosses) text += " and some of " + std::to_string(losses.size() - kMostLosses) + " channels more";
+  if (losses.size() > kMostLosses) text += " and on " + std::to_string(losses.size() - kMostLosses) + " more";
   return text + " (receive buffers too small, or this computer too busy: lookout-doctor tells)";
 }
 
