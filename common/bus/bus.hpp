@@ -27,6 +27,7 @@ struct ChannelTraffic {
   std::int64_t num_messages = 0;
   std::int64_t num_undecodable = 0;
   std::int64_t num_lost = 0;
+  WholeCount scans;                               // of them, or messages of a channel without parts: those that came whole, those that did not
   std::int64_t num_refused = 0;                   // of a second publisher of the channel
   std::optional<StreamGuard::Time> second_heard;  // Bus::GuardNow() when one was last heard
   std::chrono::nanoseconds total_handling_time{0};
@@ -144,13 +145,16 @@ class StreamReceiver {
       return;
     }
     const auto now = bus_.GuardNow();
-    const auto decision = guard_.Next(PlaceOf(*message, bytes), now);
+    const auto place = PlaceOf(*message, bytes);
+    const auto decision = guard_.Next(place, now);
     traffic_.num_lost += decision.num_lost;
     if (decision.held == StreamGuard::Held::kTake) HandleHeld();
     if (decision.held == StreamGuard::Held::kRefuse) ClearHeld();
     if (decision.act == StreamGuard::Act::kHold) Hold(std::move(*message), bytes.size(), now);
     NoteRefused(now);
-    if (decision.act == StreamGuard::Act::kTake) HandOut(*message, bytes);
+    if (decision.act != StreamGuard::Act::kTake) return;
+    traffic_.scans.Note(place.seq, place.part_index, place.num_parts, decision.num_lost);
+    HandOut(*message, bytes);
   }
 
   void Release(bool is_end) {

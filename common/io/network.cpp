@@ -8,13 +8,65 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string_view>
 
 namespace lookout::io {
 
 namespace {
 
 constexpr std::array<std::uint8_t, 12> kMappedPrefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF};  // RFC 4291, 2.5.5.2
+
+// Numbers of the sockets that listen at a TCP port, as proc(5) tells them: local address, remote address, state, ..., inode.
+std::set<std::string> ListeningSockets(int port) {
+  constexpr std::string_view kListens = "0A";
+  constexpr int kFieldsToInode = 5;  // queues, timer, retransmissions, user, timeout
+  std::set<std::string> inodes;
+  for (const char* file : {"/proc/net/tcp", "/proc/net/tcp6"}) {
+    std::ifstream table(file);
+    std::string line;
+    std::getline(table, line);
+    while (std::getline(table, line)) {
+      std::istringstream fields(line);
+      std::string number;
+      std::string local;
+      std::string remote;
+      std::string state;
+      fields >> number >> local >> remote >> state;
+      if (state != kListens || local.size() < 4 || std::strtol(local.substr(local.size() - 4).c_str(), nullptr, 16) != port) continue;
+      std::string field;
+      for (int i = 0; i < kFieldsToInode; ++i) fields >> field;
+      if (fields >> field) inodes.insert("socket:[" + field + "]");
+    }
+  }
+  return inodes;
+}
+
+// "opencpn (pid 1234)"; empty where this user may not see it.
+std::string HolderOf(int port) {
+  namespace fs = std::filesystem;
+  const auto sockets = ListeningSockets(port);
+  if (sockets.empty()) return {};
+  std::error_code error;
+  for (fs::directory_iterator process("/proc", error), end; !error && process != end; process.increment(error)) {
+    const auto pid = process->path().filename().string();
+    if (!std::ranges::all_of(pid, [](char letter) { return letter >= '0' && letter <= '9'; })) continue;
+    std::error_code no_right;
+    for (fs::directory_iterator file(process->path() / "fd", no_right), last; !no_right && file != last; file.increment(no_right)) {
+      std::error_code gone;
+      if (!sockets.contains(fs::read_symlink(file->path(), gone).string())) continue;
+      std::string name;
+      std::getline(std::ifstream(process->path() / "comm"), name);
+      return name + " (pid " + pid + ")";
+    }
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -117,6 +169,16 @@ std::string NoInterfaceText(const std::string& interface) {
   if (list != nullptr) if_freenameindex(list);
   return "there is no interface '" + interface + "' now (there are: " + names +
          "). When it comes late at boot, start after it; systemd: After=sys-subsystem-net-devices-" + interface + ".device";
+}
+
+std::string CannotListenText(int error, int port) {
+  if (error == EADDRINUSE) {
+    const auto holder = HolderOf(port);
+    return "the port is taken by " + (holder.empty() ? "another program (ss -ltnp names it)" : holder) + ": end it, or give another port";
+  }
+  if (error == EADDRNOTAVAIL) return "no interface of this computer has that address now (ip address): it is waited for";
+  if (error == EACCES || error == EPERM) return std::string(std::strerror(error)) + ": ports below 1024 need a right; give another port";
+  return std::strerror(error);
 }
 
 bool InterfaceTimer::IsDue(Utime now) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -43,6 +44,14 @@ bool IsInterfaceUp(const std::string& interface);
 
 /// For errors: that it is not there, which ones there are, and what to do when it comes late at boot.
 std::string NoInterfaceText(const std::string& interface);
+
+/// For errors: why nobody can listen at a TCP port now, and what to do. A port that is taken: by which program, as far as this user may see.
+///
+/// @param error  errno of bind or listen
+std::string CannotListenText(int error, int port);
+
+/// A port that could not be had is tried again after this: its holder ends, or an interface gets its address.
+inline constexpr std::chrono::seconds kListenPause{3};
 
 /// Says when an interface is to be looked at: about once a second.
 class InterfaceTimer {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <string_view>
 #include <systemd/sd-daemon.h>
 #include <utility>
 #include <vector>
@@ -35,6 +36,16 @@ std::int64_t ResidentBytes() {
 
 // A process that waits for its first input is starting, not ill, for so long.
 constexpr std::chrono::seconds kStartTime(3);
+
+// HEALTH tells for so long what was lost.
+constexpr std::chrono::seconds kLossTime(10);
+constexpr std::size_t kMostLosses = 3;  // channels that are named
+
+// Channels whose messages are parts of scans.
+bool IsInParts(std::string_view channel) {
+  constexpr std::array kInParts{bus::kLidarScan, bus::kSegments, bus::kObstacles, bus::kTracks};
+  return std::ranges::find(kInParts, channel, &bus::Channel::name) != kInParts.end();
+}
 
 std::string SecondPublisherText(const std::string& channel, std::int64_t num_refused) {
   const auto* entry = bus::FindChannel(channel);
@@ -84,6 +95,40 @@ void HealthReporter::Fill(Utime now, const HealthReport& report, health_t& messa
   message.num_counters = static_cast<std::int32_t>(message.counters.size());
 }
 
+// "17 of 100 scans of LIDAR_SCAN were lost ..." within the last kLossTime; empty where nothing was.
+std::string HealthReporter::LossText(std::chrono::steady_clock::time_point now, bus::Bus& bus) {
+  Inputs inputs{.time = now, .whole_and_lost = {}};
+  for (const auto& [name, traffic] : bus.input_traffic()) inputs.whole_and_lost[name] = {traffic.scans.num_whole(), traffic.scans.num_lost()};
+  inputs_.push_back(std::move(inputs));
+  while (inputs_.size() > 2 && now - inputs_[1].time >= kLossTime) inputs_.pop_front();
+  struct Loss {
+    std::string_view name;
+    std::int64_t num_lost;
+    std::int64_t number;  // of those that should have come
+  };
+  std::vector<Loss> losses;
+  for (const auto& [name, counts] : inputs_.back().whole_and_lost) {
+    const auto found = inputs_.front().whole_and_lost.find(name);
+    const auto before = found == inputs_.front().whole_and_lost.end() ? std::pair<std::int64_t, std::int64_t>() : found->second;
+    const auto num_lost = counts.second - before.second;
+    if (num_lost > 0) losses.push_back({name, num_lost, counts.first - before.first + num_lost});
+  }
+  if (losses.empty()) return {};
+  // What costs most first: scans, then by share. All of them would hide other reasons.
+  std::ranges::stable_sort(losses, {}, [](const Loss& loss) {
+    return std::pair(!IsInParts(loss.name), -static_cast<double>(loss.num_lost) / static_cast<double>(loss.number));
+  });
+  const auto seconds = std::chrono::round<std::chrono::seconds>(now - inputs_.front().time).count();
+  std::string text = "lost on the bus in the last " + std::to_string(seconds) + " s:";
+  for (std::size_t i = 0; i < std::min(losses.size(), kMostLosses); ++i) {
+    const auto& [name, num_lost, number] = losses[i];
+    text += std::string(i == 0 ? " " : ", ") + std::to_string(num_lost) + " of " + std::to_string(number) +
+            (IsInParts(name) ? " scans of " : " messages of ") + std::string(name);
+  }
+  if (losses.size() > kMostLosses) text += " and on " + std::to_string(losses.size() - kMostLosses) + " more";
+  return text + " (receive buffers too small, or this computer too busy: lookout-doctor tells)";
+}
+
 health_t HealthReporter::MakeBetween(Utime now, const HealthReport& report) {
   health_t message = last_message_;
   Fill(now, report, message);
@@ -96,6 +141,7 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
   health_t message{};
   const auto num_unsent = bus.num_unsent() - std::exchange(last_num_unsent_, bus.num_unsent());
   bus_text_ = num_unsent > 0 ? std::to_string(num_unsent) + " messages could not be sent" : std::string();
+  if (const auto text = LossText(steady_now, bus); !text.empty()) bus_text_ += (bus_text_.empty() ? "" : "; ") + text;
   last_num_refused_ = 0;
   for (const auto& [name, traffic] : bus.input_traffic()) {
     last_num_refused_ += traffic.num_refused;

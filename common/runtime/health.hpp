@@ -2,9 +2,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/bus/bus.hpp"
 #include "common/core/health.hpp"
@@ -37,7 +40,15 @@ class HealthReporter {
   std::int64_t last_num_unsent_ = 0;
   std::int64_t last_num_refused_ = 0;             // of second publishers
   std::optional<std::int64_t> last_num_dropped_;  // datagrams, by the filter of the bus
-  std::string bus_text_;  // of the last call of Make: messages that could not be sent, channels with two publishers, a bus without its filter
+  // What came whole of each input and what did not, as of the last calls of Make.
+  struct Inputs {
+    std::chrono::steady_clock::time_point time;
+    std::map<std::string, std::pair<std::int64_t, std::int64_t>> whole_and_lost;
+  };
+  std::string LossText(std::chrono::steady_clock::time_point now, bus::Bus& bus);
+  std::deque<Inputs> inputs_;
+  std::string
+      bus_text_;  // of the last call of Make: messages that could not be sent or were lost, channels with two publishers, a bus without its filter
   health_t last_message_{};
   std::map<std::string, std::int64_t> last_counts_;  // by channel, inputs and outputs apart
 };

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/bus/lcm_url.hpp"
+#include "common/config/boat_folder.hpp"
 #include "common/config/text_config.hpp"
 #include "common/runtime/run_info.hpp"
 #include "common/runtime/version.hpp"
@@ -34,7 +35,10 @@ Options ParseOptions(int argc, char** argv, const std::string& program, const st
   Options options;
   std::string config_folder;
   CLI::App app(purpose, program);
-  app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")
+      ->required()
+      ->check(CLI::ExistingDirectory)
+      ->check(lookout::config::BoatFolderFault);
   app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
   app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");
   app.set_version_flag("--version", program + " " + Version());

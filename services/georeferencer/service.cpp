@@ -1,7 +1,5 @@
 #include "services/georeferencer/service.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -14,9 +12,6 @@
 namespace lookout::georeferencer {
 
 namespace {
-
-// POSE comes 50 times a second, SEGMENTS once a scan: HEALTH names a silence that lasts this long, and a time-out for as long.
-constexpr std::chrono::seconds kSilence(2);
 
 // What the status of POSE means for obstacles; empty where it is OK.
 std::string_view PoseText(std::int32_t pose_status) {
@@ -44,14 +39,14 @@ Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), georeferencer
 void Service::OnSegments(const segments_t& message) {
   auto part = ToSegmentPart(message, bus::kMaxMessageBytes);
   if (const auto* refusal = std::get_if<Refusal>(&part)) return segments_refused_.Add(*refusal);
-  segments_seen_ = now_;
+  segments_watch_.Note();
   Publish(georeferencer_.AddSegments(std::get<SegmentPart>(std::move(part))));
 }
 
 void Service::OnPose(const pose_t& message) {
   const auto pose = messages::ToPose(message);
   if (const auto* refusal = std::get_if<Refusal>(&pose)) return poses_refused_.Add(*refusal);
-  pose_seen_ = now_;
+  pose_watch_.Note();
   newest_pose_status_ = message.status;
   CheckDatum(std::get<Pose>(pose));
   Publish(georeferencer_.AddPose(std::get<Pose>(pose)));
@@ -68,8 +63,8 @@ void Service::CheckDatum(const Pose& pose) {
 
 void Service::AdvanceTo(Utime host_time) {
   now_ = host_time;
-  // Waiting begins with the first call, or again where the host's clock was set back.
-  for (auto* seen : {&pose_seen_, &segments_seen_}) *seen = std::min(seen->value_or(host_time), host_time);
+  segments_watch_.AdvanceTo(host_time);
+  pose_watch_.AdvanceTo(host_time);
   Publish(georeferencer_.AdvanceTo(host_time));
 }
 
@@ -90,16 +85,15 @@ HealthReport Service::Report() const {
   segments_refused_.AppendTo(report.counters);
   poses_refused_.AppendTo(report.counters);
 
-  const auto silence = [this](std::optional<Utime> seen) { return now_ && seen ? *now_ - *seen : std::chrono::microseconds(0); };
-  if (silence(segments_seen_) >= kSilence)
-    report.Degrade(fmt::format("no SEGMENTS for {} s", std::chrono::floor<std::chrono::seconds>(silence(segments_seen_)).count()));
-  if (silence(pose_seen_) >= kSilence) {
-    report.Degrade(fmt::format("no POSE for {} s", std::chrono::floor<std::chrono::seconds>(silence(pose_seen_)).count()));
+  if (const auto text = segments_watch_.Complaint(); !text.empty()) report.Degrade(text);
+  if (pose_watch_.is_silent()) {
+    report.Degrade(pose_watch_.Complaint());
   } else {
     const auto status = newest_pose_status_.value_or(pose_t::STATUS_OK);
     if (const auto text = PoseText(status); !text.empty()) report.Degrade(text);
     const bool is_placed = status == pose_t::STATUS_OK || status == pose_t::STATUS_COASTING;
-    const bool is_late = georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence;
+    const auto timeout = georeferencer_.last_timeout();
+    const bool is_late = timeout && (!now_ || *now_ - *timeout < kInputSilence);
     if (is_placed && is_late) report.Degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
   }
   if (!datum_complaint_.empty()) report.Degrade(datum_complaint_);

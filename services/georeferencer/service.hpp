@@ -7,6 +7,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/core/health.hpp"
+#include "common/core/input_watch.hpp"
 #include "common/core/utime.hpp"
 #include "common/messages/pose_message.hpp"
 #include "lookout/pose_t.hpp"
@@ -49,8 +50,8 @@ class Service {
   std::optional<std::int32_t> newest_pose_status_;  // of pose_t
   // Host time, live only.
   std::optional<Utime> now_;
-  std::optional<Utime> pose_seen_;  // when the last valid one came, or waiting began
-  std::optional<Utime> segments_seen_;
+  InputWatch segments_watch_{bus::kSegments.name};
+  InputWatch pose_watch_{bus::kPose.name};
 };
 
 }  // namespace lookout::georeferencer

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "common/bus/log_file.hpp"
+#include "common/config/boat_folder.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
 #include "common/io/file_kind.hpp"
@@ -136,7 +137,10 @@ int RunLink(int argc, char** argv) {
   bool is_link = false;
   CLI::App app("Prints the link to the page of a boat, with its token, and a QR code for a tablet.", "lookout-page");
   app.add_flag("--link", is_link)->required();
-  app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")
+      ->required()
+      ->check(CLI::ExistingDirectory)
+      ->check(lookout::config::BoatFolderFault);
   app.footer("The token file is found as by the process: with its user, its environment and its config.");
   try {
     app.parse(argc, argv);

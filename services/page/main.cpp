@@ -6,6 +6,7 @@
 #include <memory>
 #include <spdlog/spdlog.h>
 
+#include "common/io/disk_reserve.hpp"
 #include "common/runtime/service_main.hpp"
 #include "common/runtime/version.hpp"
 #include "services/page/announcement.hpp"
@@ -65,6 +66,7 @@ page::LookBackOptions LookBackOptionsOf(const Config& config, std::function<void
   options.recorder_folder = config.params.recorder_folder;
   options.span = config.params.look_back;
   options.max_bytes = config.params.spool_max_bytes;
+  options.reserve = lookout::io::ReserveAt(options.spool_folder, config.params.log_folder, config.params.reserve_bytes);
   options.boat_text = config.boat_text;
   options.on_sources = std::move(on_sources);
   options.tell = [](const std::string& line) { spdlog::info("{}", line); };
@@ -80,7 +82,8 @@ void Announce(const page::Params& params, int port, const std::string& token) {
   if (isatty(STDOUT_FILENO) == 1) std::cout << page::LinkText(own, others, token) << std::flush;
 }
 
-void AddTo(lookout::HealthReport& report, const Faults& faults, const page::LookBack* look_back) {
+void AddTo(lookout::HealthReport& report, const Faults& faults, const page::Server& server, const page::LookBack* look_back) {
+  for (const auto& fault : server.Faults()) report.Degrade(fault);
   if (!faults.token.empty()) report.Degrade("nobody can acknowledge: " + faults.token);
   if (!faults.map.empty()) report.Degrade("no map: " + faults.map);
   if (!faults.look_back.empty()) report.Degrade("no look back: " + faults.look_back);
@@ -88,6 +91,7 @@ void AddTo(lookout::HealthReport& report, const Faults& faults, const page::Look
   if (look_back == nullptr) return;
   const auto status = look_back->Status();
   if (!status.fault.empty()) report.Degrade("no look back: " + status.fault);
+  if (!status.shortage.empty()) report.Degrade("the look back is shorter than configured: " + status.shortage);
   report.counters.push_back({"look_back_follows_recorder", status.is_following ? 1 : 0});
   report.counters.push_back({"look_back_messages", status.num_spooled});
   report.counters.push_back({"look_back_bytes", status.num_spooled_bytes});
@@ -102,6 +106,7 @@ void Run(lookout::runtime::Process& process, const Config& config) {
   page::AcknowledgementQueue acknowledgements;
   page::ServerOptions options{.bind_address = params.bind_address,
                               .port = params.port,
+                              .waits_for_port = true,
                               .host_names = params.host_names,
                               .max_clients = params.max_clients,
                               .version = lookout::runtime::Version(),
@@ -133,15 +138,21 @@ void Run(lookout::runtime::Process& process, const Config& config) {
   page::Server server(std::move(options), std::move(parts));
   const page::ServerLink::Holder holder(link, server);
   page::ServiceParts service_parts{.server = server, .acknowledgements = acknowledgements, .now = HostNow};
-  service_parts.add_to_report = [&](lookout::HealthReport& report) { AddTo(report, faults, look_back.get()); };
+  service_parts.add_to_report = [&](lookout::HealthReport& report) { AddTo(report, faults, server, look_back.get()); };
   if (look_back) {
     service_parts.keep = [look_back](lookout::Utime time, std::string_view channel, lookout::Bytes message) {
       look_back->Append(time, channel, message);
     };
   }
   page::Service service(process.bus(), std::move(service_parts));
-  Announce(params, server.port(), token);
-  process.Every(kTick, [&service] { service.AdvanceTo(HostNow()); });
+  for (const auto& fault : server.Faults()) spdlog::warn("{}; tried again", fault);
+  bool is_announced = false;
+  process.Every(kTick, [&] {
+    service.AdvanceTo(HostNow());
+    if (is_announced || server.port() == 0) return;
+    is_announced = true;
+    Announce(params, server.port(), token);
+  });
   process.Run([&service] { return service.Report(); });
 }
 

@@ -97,12 +97,14 @@ Params LoadParams(const fs::path& config_folder) {
   }
   faults.ThrowIfAny();
   params.boat = boat->name;
-  if (follows_recorder) {
-    try {
-      params.recorder_folder = config::Load<config::Recorder>(config_folder, "recorder.txtpb").log_folder();
-    } catch (const config::ConfigError&) {  // the recorder tells of it
-      params.recorder_folder.reset();
-    }
+  config::Recorder recorder;
+  params.reserve_bytes = recorder.reserve_bytes();
+  try {
+    recorder = config::Load<config::Recorder>(config_folder, "recorder.txtpb");
+    params.reserve_bytes = recorder.reserve_bytes();
+    params.log_folder = recorder.log_folder();
+    if (follows_recorder) params.recorder_folder = params.log_folder;
+  } catch (const config::ConfigError&) {  // the recorder tells of it
   }
   return params;
 }

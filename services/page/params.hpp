@@ -23,9 +23,12 @@ struct Params {
   std::filesystem::path spool_folder = {};  // empty: in the state folder
   std::int64_t spool_max_bytes = 2'000'000'000;
   std::optional<std::filesystem::path> recorder_folder = {};  // whose growing log is read instead; absolute, or relative to the working folder
+  std::optional<std::filesystem::path> log_folder = {};       // of the recorder, followed or not: the same
+  std::int64_t reserve_bytes = 1'000'000'000;                 // of its disk, that the spool leaves free, too
 };
 
-/// @param config_folder  the boat's folder, holding boat.txtpb, recorder.txtpb (for its log_folder) and page.txtpb, which may be absent
+/// @param config_folder  the boat's folder, holding boat.txtpb, recorder.txtpb (for its log_folder and reserve_bytes) and page.txtpb, which may be
+/// absent
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
 

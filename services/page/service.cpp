@@ -81,8 +81,11 @@ Service::Service(bus::Bus& bus, ServiceParts parts) : bus_(bus), parts_(std::mov
 
 template <typename T>
 void Service::Forward(const bus::Channel& channel) {
-  bus::Subscribe<T>(bus_, channel, [this, name = channel.name, index = IndexOf(channel)](const T& message, Bytes bytes) {
+  const auto found = std::ranges::find(watches_, channel.name, &InputWatch::name);
+  auto* watch = found == watches_.end() ? nullptr : &*found;
+  bus::Subscribe<T>(bus_, channel, [this, watch, name = channel.name, index = IndexOf(channel)](const T& message, Bytes bytes) {
     const auto time = parts_.now();
+    if (watch != nullptr) watch->Note();
     if constexpr (std::is_same_v<T, alerts_t>) OnAlerts(message, time);
     if (parts_.keep) parts_.keep(time, name, bytes);
     if (parts_.server.IsWatched(index)) parts_.server.Publish(index, SlotOf(message), message.utime_us, PartOf(message), time, bytes);
@@ -98,6 +101,7 @@ void Service::OnAlerts(const alerts_t& message, Utime time) {
 }
 
 void Service::AdvanceTo(Utime host_time) {
+  for (auto& watch : watches_) watch.AdvanceTo(host_time);
   std::erase_if(acknowledged_, [host_time](const auto& one) { return std::chrono::abs(host_time - one.second) >= kAcknowledgedFor; });
   for (const auto& acknowledgement : parts_.acknowledgements.TakeAll()) Acknowledge(acknowledgement, host_time);
 }
@@ -129,6 +133,7 @@ HealthReport Service::Report() {
   for (const auto& [name, count] : server_counts_) report.counters.push_back({name, count});
   counts_.AppendTo(report.counters);
   report.counters.push_back({"acks_dropped", parts_.acknowledgements.num_dropped()});
+  if (const auto text = InputWatch::Complaint(watches_); !text.empty()) report.Degrade(text);
   if (parts_.add_to_report) parts_.add_to_report(report);
   return report;
 }

@@ -1,6 +1,7 @@
 // The page process without its clock and its sockets: messages of the bus to browsers that watch them and to the last minutes; acknowledgements back.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -16,6 +17,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/core/health.hpp"
+#include "common/core/input_watch.hpp"
 #include "common/core/utime.hpp"
 #include "lookout/alerts_t.hpp"
 #include "services/page/io/server.hpp"
@@ -72,6 +74,9 @@ class Service {
 
   bus::Bus& bus_;
   ServiceParts parts_;
+  // What a whole look-out gives.
+  std::array<InputWatch, 6> watches_{InputWatch(bus::kLidarScan.name), InputWatch(bus::kSegments.name), InputWatch(bus::kPose.name),
+                                     InputWatch(bus::kObstacles.name), InputWatch(bus::kTracks.name),   InputWatch(bus::kAlerts.name)};
   std::set<AlertKey> alerts_;         // of the last ALERTS: those that an acknowledgement is wanted for
   std::optional<Utime> alerts_time_;  // of their reception
   std::map<AlertKey, Utime> acknowledged_;

@@ -1,5 +1,6 @@
 // The plotter process: TRACKS, ALERTS and POSE in; NMEA 0183, Signal K and NMEA 2000 out; ALERT_ACK out.
 #include <chrono>
+#include <spdlog/spdlog.h>
 #include <thread>
 
 #include "common/runtime/service_main.hpp"
@@ -10,6 +11,7 @@
 namespace {
 
 constexpr std::chrono::milliseconds kTick(5);
+constexpr std::chrono::seconds kRemarkPeriod(1);
 
 void Run(lookout::runtime::Process& process, const lookout::plotter::Params& params) {
   lookout::plotter::Links links;
@@ -18,6 +20,9 @@ void Run(lookout::runtime::Process& process, const lookout::plotter::Params& par
     links.Poll();
     service.AdvanceTo(lookout::runtime::HostNow());
     links.Poll();
+  });
+  process.Every(kRemarkPeriod, [&service] {
+    for (const auto& line : service.TakeRemarks()) spdlog::info("{}", line);
   });
   process.Run([&service] { return service.Report(); });
   service.Finish();

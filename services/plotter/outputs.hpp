@@ -14,7 +14,7 @@ namespace lookout::plotter {
 std::unique_ptr<Output> MakeOutput(const Params& params, const OutputParams& output, std::unique_ptr<Link> link);
 
 /// @param links  outlives the result
-/// @throws std::runtime_error naming the output: a server's port is in use, or its address is not one of this computer
+/// @throws std::runtime_error naming the output: an address is not numeric, or a request cannot hold its path or token
 std::vector<std::unique_ptr<Output>> OpenOutputs(const Params& params, Links& links);
 
 }  // namespace lookout::plotter

@@ -251,4 +251,18 @@ HealthReport Service::Report() const {
   return report;
 }
 
+std::vector<std::string> Service::TakeRemarks() {
+  std::set<std::string> remarks;
+  std::vector<std::string> news;
+  for (const auto& output : outputs_) {
+    const auto remark = output->link().remark();
+    if (remark.empty()) continue;
+    const auto line = fmt::format("output '{}': {}", output->params().name, remark);
+    if (!remarks_.contains(line)) news.push_back(line);
+    remarks.insert(line);
+  }
+  remarks_ = std::move(remarks);
+  return news;
+}
+
 }  // namespace lookout::plotter

@@ -6,7 +6,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +40,9 @@ class Service {
 
   HealthReport Report() const;
 
+  /// Lines for the log of the process, each when it comes up: of outputs that nobody listens to, which is no fault.
+  std::vector<std::string> TakeRemarks();
+
  private:
   void OnTracks(const tracks_t& message);
   void OnAlerts(const alerts_t& message);
@@ -61,6 +66,7 @@ class Service {
   bus::Bus& bus_;
   Params params_;
   std::vector<std::unique_ptr<Output>> outputs_;
+  std::set<std::string> remarks_;  // that hold
   messages::PartAssembler<tracks_t> parts_;
   TargetNumbers numbers_;
   OwnShip own_;

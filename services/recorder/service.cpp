@@ -161,7 +161,9 @@ void Service::WatchGaps(const bus::Channel& channel, Bytes bytes) {
   if (!place) return;  // its readers refuse it, or it does not count
   auto found = guards_.find(channel.name);
   if (found == guards_.end()) found = guards_.emplace(std::string(channel.name), bus::StreamGuard(channel)).first;
-  NoteMissing(channel, found->second.Next(*place, time_.Advance(clock_())).num_lost);
+  const auto num_lost = found->second.Next(*place, time_.Advance(clock_())).num_lost;
+  traffic.scans.Note(place->seq, place->part_index, place->num_parts, num_lost);
+  NoteMissing(channel, num_lost);
 }
 
 void Service::NoteMissing(const bus::Channel& channel, std::int64_t number) {

@@ -11,6 +11,7 @@ Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), segmenter_(pa
 }
 
 void Service::OnScan(const lidar_scan_t& message) {
+  scans_watch_.Note();
   last_fault_ = messages::FaultOf(message, bus::kMaxMessageBytes);
   if (last_fault_) {
     refusals_.Add(*last_fault_);
@@ -36,6 +37,7 @@ void Service::OnScan(const lidar_scan_t& message) {
 
 HealthReport Service::Report() const {
   HealthReport report;
+  if (const auto text = scans_watch_.Complaint(); !text.empty()) report.Degrade(text);
   if (last_fault_ && time_.passed() - refused_at_ < Recently::kToldFor) {
     report.Degrade("the latest LIDAR_SCAN was refused: " + std::string(*last_fault_));
   }

@@ -8,6 +8,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/core/health.hpp"
+#include "common/core/input_watch.hpp"
 #include "common/core/recently.hpp"
 #include "common/core/utime.hpp"
 #include "common/messages/part_assembler.hpp"
@@ -20,9 +21,12 @@ class Service {
   Service(bus::Bus& bus, const Params& params);
 
   /// Live only: host time has come so far. To be called once a second.
-  void AdvanceTo(Utime host_time) { time_.Advance(host_time); }
+  void AdvanceTo(Utime host_time) {
+    time_.Advance(host_time);
+    scans_watch_.AdvanceTo(host_time);
+  }
 
-  /// @return degraded while the latest LIDAR_SCAN was refused, for a minute at most
+  /// @return degraded while no LIDAR_SCAN comes, or the latest was refused, for a minute at most
   HealthReport Report() const;
 
  private:
@@ -35,6 +39,7 @@ class Service {
   std::optional<messages::Fault> last_fault_;  // of the latest message, if it was refused
   std::chrono::microseconds refused_at_{0};
   PassedTime time_{std::chrono::seconds(2)};
+  InputWatch scans_watch_{bus::kLidarScan.name};
   static constexpr auto kCountNames =
       std::to_array<std::string_view>({"scans", "segments", "segments_too_small", "segments_over_limit", "returns_repeated", "scans_incomplete",
                                        "scans_inconsistent", "parts_duplicate", "parts_inconsistent"});

@@ -15,8 +15,6 @@ namespace {
 
 // Acknowledgements that wait for a scan: people do not press buttons more often.
 constexpr std::size_t kMaxAcknowledgements = 100;
-// HEALTH names a silence that lasts this long, and a time-out for as long.
-constexpr std::chrono::seconds kSilence(2);
 // Room in ALERTS for the words on the guard zone.
 constexpr int kZoneTextBytes = 4096;
 
@@ -42,7 +40,7 @@ Service::Service(bus::Bus& bus, const Params& params, Given given)
 
 void Service::OnObstacles(const obstacles_t& message) {
   if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return obstacles_refused_.Add(*fault);
-  obstacles_seen_ = now_;
+  obstacles_watch_.Note();
   if (message.num_parts == 1 && obstacles_parts_.is_empty()) return AddObstacles({&message, 1});
   const auto ended = obstacles_parts_.Add(message);
   if (!ended.incomplete.empty()) AddObstacles(ended.incomplete);
@@ -65,6 +63,7 @@ void Service::AddObstacles(std::span<const obstacles_t> parts) {
 void Service::OnBeams(const lidar_scan_t& message) {
   if (!given_.sources.has_beams) return;
   if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return beams_refused_.Add(*fault);
+  other_watches_[0].Note();
   if (message.num_parts == 1 && beams_parts_.is_empty()) return AddBeams({&message, 1}, true);
   const auto ended = beams_parts_.Add(message);
   if (!ended.incomplete.empty()) AddBeams(ended.incomplete, false);
@@ -88,6 +87,7 @@ void Service::OnLabels(const segments_t& message) {
   const bool is_fitting = messages::IsWellFormed(message);
   if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return labels_refused_.Add(*fault);
   if (!is_fitting) return labels_refused_.Add(messages::kSegmentsCount);
+  other_watches_[1].Note();
   if (message.num_parts == 1 && labels_parts_.is_empty()) return AddLabels({&message, 1}, true);
   const auto ended = labels_parts_.Add(message);
   if (!ended.incomplete.empty()) AddLabels(ended.incomplete, false);
@@ -108,6 +108,7 @@ void Service::AddLabels(std::span<const segments_t> parts, bool is_whole) {
 void Service::OnPose(const pose_t& message) {
   const auto pose = messages::ToPose(message);
   if (const auto* fault = std::get_if<messages::Fault>(&pose)) return poses_refused_.Add(*fault);
+  other_watches_[2].Note();
   const bool is_new_run = pose_seq_ && message.seq < *pose_seq_;
   pose_seq_ = message.seq;
   Use(gatherer_.Add(std::get<Pose>(pose), is_new_run));
@@ -128,8 +129,8 @@ void Service::OnAcknowledgement(const alert_ack_t& message) {
 
 void Service::AdvanceTo(Utime host_time) {
   now_ = host_time;
-  // Waiting begins with the first call, or again where the host's clock was set back.
-  obstacles_seen_ = std::min(obstacles_seen_.value_or(host_time), host_time);
+  obstacles_watch_.AdvanceTo(host_time);
+  for (auto& watch : other_watches_) watch.AdvanceTo(host_time);
   Use(gatherer_.AdvanceTo(host_time));
   watch_.AdvanceTo(host_time);
   if (watch_.TakeTurn()) SendWatch();
@@ -316,10 +317,9 @@ HealthReport Service::Report() const {
   if (const auto complaint = watch_.Complaint(); !complaint.empty()) report.Degrade("no look-out: " + complaint);
   if (memory_ && !memory_->zone_sight.parts().empty()) report.Degrade(memory_->zone_text);
   if (!is_placed_) report.Degrade("no position or heading: what is seen is not tracked");
-  if (now_ && *now_ - obstacles_seen_.value_or(*now_) >= kSilence) {
-    report.Degrade(fmt::format("no OBSTACLES for {} s", std::chrono::floor<std::chrono::seconds>(*now_ - *obstacles_seen_).count()));
-  }
-  if (now_ && gatherer_.last_timeout() && *now_ - *gatherer_.last_timeout() < kSilence) {
+  if (const auto text = obstacles_watch_.Complaint(); !text.empty()) report.Degrade(text);
+  if (const auto text = InputWatch::Complaint(other_watches_); !text.empty()) report.Degrade(text);
+  if (now_ && gatherer_.last_timeout() && *now_ - *gatherer_.last_timeout() < kInputSilence) {
     report.Degrade("LIDAR_SCAN, SEGMENTS or POSE do not come with OBSTACLES: nothing is held against a track that is not seen");
   }
   return report;

@@ -14,6 +14,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/core/health.hpp"
+#include "common/core/input_watch.hpp"
 #include "common/core/utime.hpp"
 #include "common/messages/part_assembler.hpp"
 #include "common/messages/pose_message.hpp"
@@ -120,7 +121,8 @@ class Service {
   Watch watch_;
   bool reported_failing_ = false;
   std::optional<Utime> now_;
-  std::optional<Utime> obstacles_seen_;  // when the last valid ones came, or waiting began
+  InputWatch obstacles_watch_{bus::kObstacles.name};
+  std::array<InputWatch, 3> other_watches_{InputWatch(bus::kLidarScan.name), InputWatch(bus::kSegments.name), InputWatch(bus::kPose.name)};
 };
 
 }  // namespace lookout::tracker

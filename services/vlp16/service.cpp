@@ -74,14 +74,20 @@ void Service::NoteHolder(Utime host_time, Stream stream, const std::optional<Sen
   if (refusal_ && refusal_->sender == holder) refusal_.reset();
   if (holder.address.empty() || stream != Stream::kData || !on_notice_) return;
   std::string line = "uses the lidar at " + ToText(holder);
-  if (before) line += "; the one at " + ToText(*before) + " is silent";
+  if (before && before->address == holder.address) {
+    line += "; it started again, before it sent from port " + std::to_string(before->port);
+  } else if (before) {
+    line += "; the one at " + ToText(*before) + " is silent";
+  }
   told_refusal_ = Refusal{.sender = holder, .time = host_time};
   on_notice_(line);
 }
 
 void Service::NoteRefused(Utime host_time, Stream stream, const Sender& sender, bool is_valid) {
   ++num_sender_refused_[static_cast<std::size_t>(stream)];
-  refusal_ = Refusal{sender, stream, is_valid, host_time};
+  const bool goes_on =
+      refusal_ && refusal_->sender.address == sender.address && host_time >= refusal_->time && host_time - refusal_->time < SenderLock::kPortSilence;
+  refusal_ = Refusal{sender, stream, is_valid, host_time, goes_on ? refusal_->began : host_time};
   const auto since_told = told_refusal_ && host_time >= told_refusal_->time ? std::optional(host_time - told_refusal_->time) : std::nullopt;
   const bool is_same = told_refusal_ && told_refusal_->sender.address == sender.address;
   if (since_told && *since_told < (is_same ? kSameLinePeriod : kLinePeriod)) return;
@@ -92,7 +98,7 @@ void Service::NoteRefused(Utime host_time, Stream stream, const Sender& sender, 
 // Who sends besides the lidar, for people; empty when nobody does.
 std::string Service::ForeignComplaint() const {
   if (!refusal_) return {};
-  const auto& [sender, stream, is_valid, time] = *refusal_;
+  const auto& [sender, stream, is_valid, time, began] = *refusal_;
   const int port = stream == Stream::kData ? params_.data_port : params_.position_port;
   const auto& holder = lock_.holder(Stream::kData) ? lock_.holder(Stream::kData) : lock_.holder(stream);
   const std::string refused = std::to_string(num_sender_refused_[0] + num_sender_refused_[1]) + " packets of others refused so far";
@@ -100,9 +106,25 @@ std::string Service::ForeignComplaint() const {
     return "packets from " + ToText(sender) + " to port " + std::to_string(port) + " are refused: allowed_source_address does not name it (" +
            refused + ")";
   }
+  if (is_valid && holder && holder->address == sender.address) {
+    return SameAddressComplaint(lock_.holder(stream).value_or(*holder), port, refused);
+  }
   return (is_valid ? "two lidars on one port: " : "packets that are not the lidar's: ") + ToText(sender) + " sends to port " + std::to_string(port) +
          " besides the lidar at " + (holder ? ToText(*holder) : "another address") + " (" + refused +
          "); set allowed_source_address in vlp16.txtpb to the lidar to use";
+}
+
+// A sensor, simulator or forwarder that starts again sends from another port: that is no second lidar, unless the old one goes on beside it.
+std::string Service::SameAddressComplaint(const Sender& holder, int port, const std::string& refused) const {
+  const auto& [sender, stream, is_valid, time, began] = *refusal_;
+  constexpr std::chrono::milliseconds kOverlap(100);
+  const auto from = std::to_string(sender.port) + (holder.port == sender.port ? "" : ", before from " + std::to_string(holder.port));
+  if (lock_.heard(Stream::kData) <= began + kOverlap && lock_.heard(stream) <= began + kOverlap) {
+    return "the lidar at " + sender.address + " has started again: it sends to port " + std::to_string(port) + " from port " + from +
+           "; it is used when nothing has come from there for 1 s (" + refused + ")";
+  }
+  return "two programs at " + sender.address + " send packets of a lidar to port " + std::to_string(port) + ", from ports " +
+         std::to_string(holder.port) + " (used) and " + std::to_string(sender.port) + ": end one of them (" + refused + ")";
 }
 
 void Service::AdvanceTo(Utime host_time, std::optional<Utime> taken_until) {

@@ -52,6 +52,7 @@ class Service {
   void NoteHolder(Utime host_time, Stream stream, const std::optional<Sender>& before);
   void NoteRefused(Utime host_time, Stream stream, const Sender& sender, bool is_valid);
   std::string ForeignComplaint() const;
+  std::string SameAddressComplaint(const Sender& holder, int port, const std::string& refused) const;
   std::string Complaint() const;
   std::string OwnComplaint() const;
 
@@ -78,6 +79,7 @@ class Service {
     Stream stream = Stream::kData;
     bool is_valid = false;
     Utime time{};
+    Utime began{};  // of refusals of its address, without a pause
   };
   std::optional<Refusal> refusal_;
   std::array<std::int64_t, 2> num_sender_refused_{};  // by stream

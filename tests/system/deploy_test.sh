@@ -96,7 +96,22 @@ cp -r "$source_folder/config/demo" "$config"
 "$up" --version | grep -q '^lookout-up [0-9]' || fail "--version"
 "$up" --config "$config" --check >"$work/check.txt" || fail "--check of the demo"
 for name in recorder page plotter tracker georeferencer segmenter navigator vlp16; do
-  grep -q "^# lookout-$name\$" "$work/check.txt" || fail "--check does not tell of $name"
+  grep -q "^$name: ok\$" "$work/check.txt" || fail "--check does not tell of $name"
+done
+# It had 420 lines, with boat.txtpb once for each process.
+[ "$(wc -l <"$work/check.txt")" -le 40 ] || { cat "$work/check.txt"; fail "--check prints more than one can read"; }
+[ -z "$(grep '^# boat.txtpb: ' "$work/check.txt" | sort | uniq -d)" ] || { cat "$work/check.txt"; fail "--check tells twice of boat.txtpb"; }
+"$up" --config "$config" --check --values >"$work/values.txt" || fail "--check --values of the demo"
+for file in "$config"/*.txtpb; do
+  [ "$(grep -c "^# ${file##*/}\$" "$work/values.txt")" -eq 1 ] || fail "--check --values does not print ${file##*/} once"
+done
+grep -q '^name: "demo"' "$work/values.txt" || fail "--check --values has no values"
+code=0; "$up" --config "$config" --values >/dev/null 2>&1 || code=$?; [ "$code" -eq 2 ] || fail "--values alone: exit code $code"
+# A folder of boats names them, in every program.
+for program in up vlp16 segmenter navigator georeferencer tracker plotter page recorder doctor replay; do
+  code=0; "$build_folder/bin/lookout-$program" --config "$source_folder/config" --check >"$work/boats.txt" 2>&1 || code=$?
+  [ "$code" -eq 2 ] || fail "lookout-$program with a folder of boats: exit code $code"
+  grep -q "no boat's folder.* holds boats: .*config/catabot, .*config/demo" "$work/boats.txt" || { cat "$work/boats.txt"; fail "lookout-$program does not name the boats"; }
 done
 code=0; "$up" 2>/dev/null || code=$?; [ "$code" -eq 2 ] || fail "no --config: exit code $code"
 code=0; "$up" --config "$work/nowhere" 2>/dev/null || code=$?; [ "$code" -eq 2 ] || fail "no such folder: exit code $code"

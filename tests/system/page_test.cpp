@@ -1,4 +1,6 @@
 // lookout-page on a live bus: its files, live frames, who may ask, and an acknowledgement that reaches the bus.
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <chrono>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -70,7 +72,7 @@ TEST_F(Page, ServesItsFilesToWhoAsksForIt) {
   EXPECT_NE(front.body.find("<!doctype html>"), std::string::npos) << front.body.substr(0, 200);
   EXPECT_NE(front.policy.find("default-src 'none'"), std::string::npos) << front.policy;
   EXPECT_EQ(browser_.Ask("GET", "/page.js").status, 200);
-  EXPECT_EQ(browser_.Ask("GET", "/tiles.json").status, 404);
+  EXPECT_EQ(browser_.Ask("GET", "/tiles.json").status, 204) << "a boat without chart tiles";
   EXPECT_EQ(browser_.Ask("GET", "/../../etc/passwd").status, 404);
   EXPECT_EQ(browser_.Ask("GET", "/", "", "evil.example:7668").status, 421);
   EXPECT_EQ(browser_.Ask("GET", "/", "", "", "http://evil.example").status, 403);
@@ -106,11 +108,39 @@ TEST_F(Page, ShowsTheBusAndCarriesAnAcknowledgementBack) {
   EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
 }
 
-TEST_F(Page, EndsWithAReasonWhereItsPortIsTaken) {
+// It ended where its port was taken, and lookout-up ended the look-out with it.
+TEST_F(Page, WaitsForAPortThatIsTakenAndSaysWhoHasIt) {
   ASSERT_TRUE(Runs()) << child_->Output();
+  const auto first_pid = health_.pid;
   Child second(std::vector<std::string>{Bin("page"), "--config", (folder_ / "config").string()}, (folder_ / "second").string());
-  EXPECT_EQ(second.Wait(milliseconds(10'000)).value_or(-1), 1);
-  EXPECT_NE(second.Output().find("7668"), std::string::npos) << second.Output();
+  const std::string taken =
+      "the page cannot be served on 127.0.0.1 port 7668: the port is taken by lookout-page (pid " + std::to_string(first_pid) + ")";
+  ASSERT_TRUE(Until([&] { return health_.pid != first_pid && health_.state == health_t::STATE_DEGRADED; })) << second.Output();
+  EXPECT_NE(health_.reason.find(taken), std::string::npos) << health_.reason;
+  EXPECT_NE(second.Output().find(taken), std::string::npos) << second.Output();
+  EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
+  ASSERT_TRUE(Until([&] { return health_.pid != first_pid && health_.reason.find("cannot be served") == std::string::npos; })) << health_.reason;
+  EXPECT_EQ(browser_.Ask("GET", "/").status, 200);
+}
+
+// 64 connections that ask for nothing kept every browser out while HEALTH was ok.
+TEST_F(Page, IsThereForBrowsersBesideConnectionsThatAskForNothing) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  boost::asio::io_context context;
+  std::vector<std::unique_ptr<boost::asio::ip::tcp::socket>> silent;
+  const boost::asio::ip::tcp::endpoint page(boost::asio::ip::address_v4::loopback(), kPort);
+  const auto connect = [&] {
+    boost::system::error_code ignored;
+    silent.push_back(std::make_unique<boost::asio::ip::tcp::socket>(context));
+    silent.back()->connect(page, ignored);
+  };
+  for (int i = 0; i < 70; ++i) connect();
+  for (int i = 0; i < 20; ++i) {
+    connect();
+    EXPECT_EQ(browser_.Ask("GET", "/").status, 200) << i;
+  }
+  ASSERT_TRUE(Until([&] { return health_.reason.find("64 connections at one time, ") != std::string::npos; })) << health_.reason;
+  EXPECT_EQ(health_.state, health_t::STATE_DEGRADED);
 }
 
 }  // namespace

@@ -82,7 +82,11 @@ class Plotter : public ::testing::Test {
         << "output { name: 'gone' format: N2K_YDEN tcp_client { address: '127.0.0.1' port: 9 } }\n";
     bus_.SubscribeRaw(bus::kHealth, [this](std::string_view, Bytes bytes) { health_ = bus::Decode<health_t>(bytes).value(); });
     bus_.SubscribeRaw(bus::kAlertAck, [this](std::string_view, Bytes bytes) { acknowledged_.push_back(bus::Decode<alert_ack_t>(bytes).value()); });
-    child_ = std::make_unique<Child>(std::vector<std::string>{Bin("plotter"), "--config", (folder_ / "config").string()}, (folder_ / "out").string());
+    Start("out");
+  }
+  void Start(const std::string& output) {
+    child_ =
+        std::make_unique<Child>(std::vector<std::string>{Bin("plotter"), "--config", (folder_ / "config").string()}, (folder_ / output).string());
   }
 
   // A scan every 100 ms, until it is so.
@@ -133,6 +137,41 @@ TEST_F(Plotter, SendsToEachReceiverInItsLanguage) {
   scene_.num_tracks = 2;
   ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), ",L,") == 1; })) << tcp.Read();
   EXPECT_EQ(child_->Terminate(), 0) << child_->Output();
+}
+
+// It ended where a port was taken, and lookout-up ended the look-out with it.
+TEST_F(Plotter, WaitsForAPortThatIsTakenAndServesTheOthers) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  EXPECT_EQ(child_->Terminate(), 0);
+  const int holder = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int on = 1;
+  setsockopt(holder, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(kTcpPort);
+  ASSERT_EQ(bind(holder, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+  ASSERT_EQ(listen(holder, 8), 0);
+  const auto first_pid = health_.pid;
+  Start("second");
+  const std::string taken = "output 'tcp': TCP server at 127.0.0.1 port 10111: the port is taken by ";
+  ASSERT_TRUE(Until([&] { return health_.pid != first_pid && health_.reason.find(taken) != std::string::npos; })) << child_->Output();
+  EXPECT_NE(health_.reason.find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << health_.reason;
+  Receiver others(SOCK_STREAM, 0, kSignalKPort);
+  ASSERT_TRUE(Until([&] { return NumOf(others.Read(), "\"targets.lidar:demo-1\"") >= 1; })) << others.Read();
+  close(holder);
+  ASSERT_TRUE(Until([&] { return health_.reason.find("output 'tcp'") == std::string::npos; })) << health_.reason;
+  Receiver tcp(SOCK_STREAM);
+  EXPECT_TRUE(Until([&] { return NumOf(tcp.Read(), "$RATTM,") >= 1; })) << tcp.Read();
+}
+
+// A receiver that is off kept HEALTH degraded for good, and took the lines of real reasons.
+TEST_F(Plotter, TakesAUdpReceiverThatIsOffForNoFault) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  ASSERT_TRUE(Until([&] { return Count("output_udp_unheard") >= 2; })) << child_->Output();
+  EXPECT_EQ(health_.reason.find("output 'udp'"), std::string::npos) << health_.reason;
+  EXPECT_TRUE(Until([&] { return child_->Output().find("output 'udp': nobody listens at 127.0.0.1 port 10112") != std::string::npos; }))
+      << child_->Output();
 }
 
 TEST_F(Plotter, ToldToStopStopsAndSaysWhy) {

@@ -24,6 +24,7 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/config/text_config.hpp"
+#include "common/io/disk_reserve.hpp"
 #include "common/runtime/process.hpp"
 #include "services/georeferencer/params.hpp"
 #include "services/page/params.hpp"
@@ -333,8 +334,9 @@ PageSeen ReadPage(const ConfigSeen& config) {
   if (params.allows_acknowledgements && fs::exists(params.token_file, error)) seen.token_fault = FaultOf([&] { page::ReadToken(params.token_file); });
   if (!params.map_file.empty()) seen.map_fault = FaultOf([&] { const page::Tiles tiles(params.map_file); });
   if (!params.spool_folder.empty()) {
-    const auto space = fs::space(Existing(params.spool_folder), error);
-    if (!error) seen.free_bytes = static_cast<std::int64_t>(space.available);
+    const auto free_bytes = io::FreeBytes(params.spool_folder);
+    const auto reserve = io::ReserveAt(params.spool_folder, params.log_folder, params.reserve_bytes);
+    if (free_bytes >= 0) seen.free_bytes = std::max<std::int64_t>(0, reserve.BytesForOthers(free_bytes, 0));
   }
   return seen;
 }

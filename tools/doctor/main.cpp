@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/config/boat_folder.hpp"
 #include "common/config/text_config.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/run_info.hpp"
@@ -35,7 +36,10 @@ struct Options {
 Options ParseOptions(int argc, char** argv) {
   Options options;
   CLI::App app("Checks whether a boat is ready to cast off: config, bus, lidar, clocks, GNSS, heading, mounting, disk, processes.", "lookout-doctor");
-  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")
+      ->required()
+      ->check(CLI::ExistingDirectory)
+      ->check(lookout::config::BoatFolderFault);
   app.add_option("--seconds", options.seconds, "listen for so long")->check(CLI::Range(kMinSeconds, kMaxSeconds))->capture_default_str();
   app.add_flag("--check", options.check_only, "check the config of every process, print the values in force or every fault, exit");
   app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");

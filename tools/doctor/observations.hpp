@@ -136,7 +136,7 @@ struct PageSeen {
   bool is_port_taken = false;    // by anybody; ours while the page runs here
   std::string token_fault;       // empty: it is right, or will be made
   std::string map_fault;         // empty: it is right, or there is none
-  std::int64_t free_bytes = -1;  // where the last minutes are kept; -1 = not known
+  std::int64_t free_bytes = -1;  // beyond the reserve, where the last minutes are kept; -1 = not known
 };
 
 struct DiskSeen {

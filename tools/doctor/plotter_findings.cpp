@@ -40,6 +40,8 @@ Finding CheckOutput(const ProcessSeen& process, const std::string& output) {
     return Warning(kSubject, who + "takes nothing: " + Count(num_unsent, "message") + " not sent",
                    "the process line above; whether the plotter is on");
   }
+  // Over UDP nobody confirms, but who is off may be told of.
+  if (Grown(process, counter + "_unheard") > 0) return Ok(kSubject, who + "sends, but nobody listens there: the receiver is off");
   const auto num_sent = Grown(process, counter + "_sent");
   const auto clients = num_clients ? " to " + Count(*num_clients, "client") : std::string();
   return Ok(kSubject, who + "sends" + clients + ", " + Count(num_sent, "message") + " taken");

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/boat_folder.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
 #include "common/runtime/version.hpp"
@@ -51,8 +52,10 @@ Options ParseOptions(int argc, char** argv) {
       ->needs(in)
       ->capture_default_str();
 
-  auto* config =
-      app.add_option("--config", comparison.config_folder, "folder of the boat's *.txtpb files")->check(CLI::ExistingDirectory)->excludes(in);
+  auto* config = app.add_option("--config", comparison.config_folder, "folder of the boat's *.txtpb files")
+                     ->check(CLI::ExistingDirectory)
+                     ->check(lookout::config::BoatFolderFault)
+                     ->excludes(in);
   const auto needs_config = [config](CLI::Option* option) { return option->needs(config); };
   needs_config(app.add_option("--scenes", comparison.scenes, "all, families (all of them), or names of scenes or .txtpb files"))->delimiter(',');
   auto* weights = needs_config(app.add_option("--weights", comparison.weights_folder, "folder of evidence: without-FAMILY.txtpb and all.txtpb"))

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/boat_folder.hpp"
 #include "common/core/log_time.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
@@ -42,7 +43,8 @@ int main(int argc, char** argv) {
   app.add_option("--to", request.to, "the same; the first time that is not in it")->check(is_given);
   auto* near_option =
       app.add_option("--near", near, "csv and maps of obstacles, tracks and pose: LATITUDE,LONGITUDE,RADIUS in degrees and metres: what lies within");
-  app.add_option("--config", request.config, "table merges: the boat's folder, by which LIDAR_SCAN is segmented again");
+  app.add_option("--config", request.config, "table merges: the boat's folder, by which LIDAR_SCAN is segmented again")
+      ->check(lookout::config::BoatFolderFault);
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
   app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line or config.");
   try {

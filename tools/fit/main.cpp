@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "common/config/boat_folder.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
 #include "common/runtime/version.hpp"
@@ -22,7 +23,10 @@ fit::Options ParseOptions(int argc, char** argv) {
   fit::Options options;
   options.command = fmt::format("lookout-fit {}", fmt::join(argv + 1, argv + argc, " "));
   CLI::App app("Fits the evidence of the lookout method on simulated scenes, and writes it as a file that segmenter.txtpb can name.", "lookout-fit");
-  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->check(CLI::ExistingDirectory)->required();
+  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")
+      ->check(CLI::ExistingDirectory)
+      ->check(lookout::config::BoatFolderFault)
+      ->required();
   app.add_option("--scenes", options.scenes, "families, all (scenes that are no families), or names of scenes or .txtpb files")
       ->delimiter(',')
       ->required();

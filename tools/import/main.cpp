@@ -11,6 +11,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/config/boat_folder.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
 #include "common/io/file_kind.hpp"
@@ -42,7 +43,10 @@ Options ParseOptions(int argc, char** argv) {
       "POSE "
       "of its ferry.",
       "lookout-import");
-  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files, for RUN_INFO")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files, for RUN_INFO")
+      ->required()
+      ->check(CLI::ExistingDirectory)
+      ->check(lookout::config::BoatFolderFault);
   app.add_option("--in", options.input, "recording")->required()->check(CLI::ExistingPath);
   app.add_option("--out", options.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused")->required();
   app.add_flag("--force", options.force, "replace an existing --out");

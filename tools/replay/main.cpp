@@ -16,6 +16,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/config/boat_folder.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/log_time.hpp"
 #include "common/io/output_file.hpp"
@@ -57,7 +58,10 @@ Options ParseOptions(int argc, char** argv) {
   std::string day;
   CLI::App app("Runs captures or lcm-logs through all services, or some, in one process and writes an lcm-log. Same input, same bytes.",
                "lookout-replay");
-  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")
+      ->required()
+      ->check(CLI::ExistingDirectory)
+      ->check(lookout::config::BoatFolderFault);
   app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
   app.add_option("--in", options.inputs, "pcap, pcapng, text log of NMEA 0183 or lcm-log; several are read in their order")->check(CLI::ExistingPath);
   app.add_option("--out", options.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "common/config/boat_folder.hpp"
 #include "common/core/log_time.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/sim/scene_file.hpp"
@@ -53,7 +54,10 @@ Sector ToFieldOfView(const std::vector<double>& from_to_deg) {
 }
 
 void AddRun(CLI::App& app, Options& options) {
-  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")
+      ->required()
+      ->check(CLI::ExistingDirectory)
+      ->check(lookout::config::BoatFolderFault);
   app.add_option("--scene", options.scene, "name of a scene (--list-scenes), or path of a file that ends in .txtpb")->required();
   app.add_option("--seed", options.simulation.seed, "of all that is random")->required();
   app.add_option("--seconds", options.seconds, "length")->required()->check(Within(0.001, 86400.0));

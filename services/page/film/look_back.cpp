@@ -94,23 +94,53 @@ struct LookBack::Implementation {
     std::optional<Utime> end;
     {
       const std::scoped_lock lock(mutex);
+      recording.CloseRemoved();
       if (!recording.timeline().is_empty()) end = recording.timeline().end();
     }
     if (std::exchange(end_told, end) != end && options.on_sources) options.on_sources();
   }
 
+  // What the disk's reserve leaves to the spool, and why that is too little. Where the room is not known writing tells.
+  std::string TakeRoom() {
+    const auto free_bytes = options.free_bytes(options.spool_folder);
+    room_bytes = options.max_bytes;
+    if (free_bytes < 0) return {};
+    room_bytes = std::min(options.max_bytes, options.reserve.BytesForOthers(free_bytes, spool.num_bytes()));
+    room_text = options.spool_folder.string() + ": " + options.reserve.Text(free_bytes) + "; move or delete logs";
+    return room_bytes < std::min(options.max_bytes, kLeastBytes) ? room_text : std::string();
+  }
+
+  void StopSpool(const std::string& fault, std::size_t num_lost) {
+    if (retry_periods == 0) retry_periods = kRetryPeriods;
+    if (!std::exchange(is_stop_told, true)) Tell("the spool of the last minutes is not written: " + fault);
+    const std::scoped_lock lock(status_mutex);
+    status.num_lost += static_cast<std::int64_t>(num_lost);
+    status.fault = fault;
+    status.shortage.clear();
+  }
+
+  // What was spooled goes back to the disk, and out of what is shown: nobody can read it any more.
+  void GiveUpSpool() {
+    if (spool.num_files() == 0) return;
+    ClearSpool();
+    const std::scoped_lock lock(mutex);
+    recording = Recording();
+  }
+
+  void ClearSpool() {
+    spool.Clear();
+    spool_indexer.reset();
+    spool_file.clear();
+    spool_numbers.clear();
+  }
+
   void WriteToSpool(const std::vector<SpooledMessage>& messages) {
     if (messages.empty()) return;
-    if (retry_periods > 0 || !spool.Write(messages, options.max_bytes / kFilesOfTheSpool)) {
-      if (retry_periods == 0) {
-        Tell("the spool of the last minutes is not written: " + spool.fault());
-        retry_periods = kRetryPeriods;
-      }
-      const std::scoped_lock lock(status_mutex);
-      status.num_lost += static_cast<std::int64_t>(messages.size());
-      status.fault = spool.fault();
-      return;
+    if (const auto why = TakeRoom(); !why.empty()) {
+      GiveUpSpool();
+      return StopSpool(why, messages.size());
     }
+    if (retry_periods > 0 || !spool.Write(messages, room_bytes / kFilesOfTheSpool)) return StopSpool(FaultNow(), messages.size());
     std::int64_t num_bytes = 0;
     for (const auto& message : messages) num_bytes += static_cast<std::int64_t>(message.bytes.size());
     if (spool.file() != spool_file) {
@@ -125,6 +155,14 @@ struct LookBack::Implementation {
     status.num_spooled += static_cast<std::int64_t>(messages.size());
     status.num_spooled_bytes += num_bytes;
     status.fault.clear();
+    is_stop_told = false;
+    if (room_bytes >= options.max_bytes) status.shortage.clear();
+  }
+
+  // While it is not tried again the reason stays.
+  std::string FaultNow() const {
+    const std::scoped_lock lock(status_mutex);
+    return retry_periods > 0 && !status.fault.empty() ? status.fault : spool.fault();
   }
 
   // @return when the log is read as far as it goes
@@ -161,14 +199,12 @@ struct LookBack::Implementation {
       if (newest - fs::last_write_time(log, error) <= options.span) to_follow.push_back(log);
     }
     followed.reset();
-    spool.Clear();
-    spool_indexer.reset();
-    spool_file.clear();
-    spool_numbers.clear();
+    ClearSpool();
     is_following = true;
     {
       const std::scoped_lock lock(status_mutex);
       status.fault.clear();  // the spool is not needed any more
+      status.shortage.clear();
     }
     const std::scoped_lock lock(mutex);
     recording = Recording();  // the recorder's log holds what the spool held
@@ -222,17 +258,23 @@ struct LookBack::Implementation {
     if (recording.timeline().is_empty()) return;
     auto from = recording.timeline().end() - options.span;
     while (spool.num_files() > 1) {
-      const bool is_too_large = spool.num_bytes() > options.max_bytes;
+      const bool is_too_large = spool.num_bytes() > room_bytes;
       // As it is shown: where the host's clock was set back, that is later than it was written. While the recording has a file open, its bytes stay
       // on the disk.
       const auto number = spool_numbers.find(spool.oldest_file());
       const auto last = number == spool_numbers.end() ? std::nullopt : recording.LastOf(number->second);
       if (!is_too_large && last && *last >= from) break;
+      if (is_too_large && last && *last >= from && room_bytes < options.max_bytes) TellShortage();
       if (is_too_large && last) from = std::max(from, *last + std::chrono::microseconds(1));
       if (number != spool_numbers.end()) spool_numbers.erase(number);
       spool.DropOldest();
     }
     recording.DropBefore(from);
+  }
+
+  void TellShortage() {
+    const std::scoped_lock lock(status_mutex);
+    status.shortage = room_text;
   }
 
   void UpdateSourcesText() {
@@ -308,6 +350,9 @@ struct LookBack::Implementation {
   int num_still = 0;
   int num_periods = 0;
   int retry_periods = 0;
+  bool is_stop_told = false;
+  std::int64_t room_bytes = options.max_bytes;  // of the spool: what the disk's reserve leaves to it
+  std::string room_text;
   std::optional<Utime> end_told;
 
   std::thread thread;  // last: it begins when all else is there

@@ -12,6 +12,7 @@
 
 #include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
+#include "common/io/disk_reserve.hpp"
 #include "services/page/core/recordings.hpp"
 
 namespace lookout::page {
@@ -21,16 +22,19 @@ struct LookBackOptions {
   std::optional<std::filesystem::path> recorder_folder = {};      // log_folder of recorder.txtpb
   std::chrono::seconds span = std::chrono::minutes(10);           // how far one can look back
   std::int64_t max_bytes = std::int64_t{2} * 1024 * 1024 * 1024;  // of the spool
-  std::int64_t queue_bytes = std::int64_t{8} * 1024 * 1024;       // that may wait for the disk
-  std::string boat_text = "null";                                 // BoatText: `boat` of the source
-  std::function<void()> on_sources = {};                          // called on its thread, at most once a second
-  std::function<void(const std::string& line)> tell = {};         // for people; on its thread
+  io::DiskReserve reserve{0};                                     // of the spool's disk; see ReserveAt
+  std::function<std::int64_t(const std::filesystem::path& folder)> free_bytes = io::FreeBytes;
+  std::int64_t queue_bytes = std::int64_t{8} * 1024 * 1024;  // that may wait for the disk
+  std::string boat_text = "null";                            // BoatText: `boat` of the source
+  std::function<void()> on_sources = {};                     // called on its thread, at most once a second
+  std::function<void(const std::string& line)> tell = {};    // for people; on its thread
 };
 
 /// Counts since the start.
 struct LookBackStatus {
   bool is_following = false;  // the recorder's log; else the spool is written
   std::string fault = {};     // why the spool is not written; empty when it is, or is not needed
+  std::string shortage = {};  // why it holds less than the span; empty when it holds all, or is not needed
   std::int64_t num_spooled = 0;
   std::int64_t num_spooled_bytes = 0;
   std::int64_t num_lost = 0;  // messages that the spool lacks: the disk was too slow, full or failed
@@ -38,12 +42,16 @@ struct LookBackStatus {
 
 /// Source 0, growing. The spool is a log for each minute, SPOOL/look-back-N.lcmlog.partial: never committed, so never synced, and gone with the
 /// process; what a killed process left is removed at the next start. Once a second the recorder's folder is looked at: when its newest log grows,
-/// that is followed and no spool is written; when it has not grown for 5 s, the spool is written again.
+/// that is followed and no spool is written; when it has not grown for 5 s, the spool is written again. It leaves the reserve of the disk free: where
+/// less is left it gives up its oldest minutes, and below kLeastBytes ends.
 class LookBack final : public Recordings {
  public:
   /// Starts its thread.
   /// @throws std::runtime_error when the folder of the spool cannot be made
   explicit LookBack(LookBackOptions options);
+
+  /// A spool of less would hold some seconds.
+  static constexpr std::int64_t kLeastBytes = 10'000'000;
 
   /// Removes the spool.
   ~LookBack() override;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <system_error>
 
 #include "services/page/film/log_indexer.hpp"
 
@@ -25,6 +26,7 @@ std::uint16_t Recording::AddLog(const std::filesystem::path& log) {
     ++num_logs_;
   }
   const auto number = static_cast<std::uint16_t>(num_logs_++ % UINT16_MAX);
+  logs_[number].file = log;
   logs_[number].reader = std::move(reader);
   return number;
 }
@@ -59,6 +61,13 @@ void Recording::DropBefore(Utime time) {
   }
 }
 
+void Recording::CloseRemoved() {
+  for (auto& [number, log] : logs_) {
+    std::error_code error;
+    if (log.reader && !std::filesystem::exists(log.file, error) && !error) log.reader.reset();
+  }
+}
+
 std::optional<Utime> Recording::LastOf(std::uint16_t number) const {
   const auto log = logs_.find(number);
   return log == logs_.end() || !log->second.is_begun ? std::nullopt : std::optional(log->second.last);
@@ -67,6 +76,10 @@ std::optional<Utime> Recording::LastOf(std::uint16_t number) const {
 bool Recording::Read(ChannelIndex channel, const Place& place, std::vector<std::uint8_t>& bytes) {
   const auto log = logs_.find(place.file);
   if (log == logs_.end()) return false;
+  if (!log->second.reader) {
+    ++num_missing_;
+    return false;
+  }
   auto& reader = *log->second.reader;
   reader.UpdateSize();
   reader.Seek(place.offset_bytes);

@@ -29,6 +29,9 @@ class Recording {
   /// Forgets what was before, and closes logs of which nothing is left, but for the last.
   void DropBefore(Utime time);
 
+  /// Closes logs that were removed: else their bytes stay on the disk, and who removed them wanted room. What they held is left out of answers.
+  void CloseRemoved();
+
   /// The time of what the log holds last, as it is shown; nullopt: it was closed, or holds nothing yet.
   std::optional<Utime> LastOf(std::uint16_t log) const;
 
@@ -45,7 +48,8 @@ class Recording {
 
  private:
   struct Log {
-    std::unique_ptr<bus::LogReader> reader;
+    std::filesystem::path file;
+    std::unique_ptr<bus::LogReader> reader;  // nullptr: it was removed
     bool is_begun = false;
     std::chrono::microseconds shift{0};
     Utime last{std::chrono::microseconds(kMinUtimeUs)};

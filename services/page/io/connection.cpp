@@ -54,9 +54,24 @@ Connection::Connection(Hub& hub, asio::ip::tcp::socket socket)
   error_code error;
   const auto local = stream_.socket().local_endpoint(error);
   if (!error) own_hosts_.names.push_back(HostTextOf(local.address()));
+  const auto remote = stream_.socket().remote_endpoint(error);
+  if (!error) remote_ = HostTextOf(remote.address());
+  hub_.connections.insert(this);
 }
 
+Connection::~Connection() { hub_.connections.erase(this); }
+
 void Connection::Start() { AwaitRequest(kFirstPatience); }
+
+void Connection::LetGo() {
+  is_let_go_ = true;
+  stream_.close();  // what waits for it hears of it
+}
+
+void Connection::Enter(Stage stage) {
+  stage_ = stage;
+  since_ = std::chrono::steady_clock::now();
+}
 
 // Between two requests a connection may stay idle for longer than one request may take.
 void Connection::AwaitRequest(std::chrono::seconds patience) {
@@ -66,6 +81,7 @@ void Connection::AwaitRequest(std::chrono::seconds patience) {
   if (buffer_.size() > 0) return ReadRequest();
   stream_.expires_after(patience);
   stream_.async_read_some(buffer_.prepare(kMaxHeadBytes), [self = shared_from_this()](error_code error, std::size_t num_bytes) {
+    if (error == beast::error::timeout && self->stage_ == Stage::kSilent) self->hub_.counts->Add("connections_silent");
     if (error) return;
     self->buffer_.commit(num_bytes);
     self->ReadRequest();
@@ -78,6 +94,7 @@ void Connection::ReadRequest() {
     if (!error) {
       self->request_ = self->parser_->release();
       self->hub_.counts->Add("requests");
+      self->Enter(Stage::kBusy);
       return self->Handle();
     }
     if (error == beast::error::timeout) return self->hub_.counts->Add("requests_late");
@@ -231,6 +248,7 @@ void Connection::Write() {
     if (error == beast::error::timeout) self->hub_.counts->Add("answers_late");
     if (error) return;
     self->content_ = {};
+    self->Enter(Stage::kIdle);
     if (!self->response_->keep_alive()) return self->Linger();
     self->AwaitRequest(kKeepAlive);
   };

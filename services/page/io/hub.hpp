@@ -20,6 +20,7 @@
 namespace lookout::page {
 
 class Client;
+class Connection;
 
 using SteadyTime = std::chrono::steady_clock::time_point;
 
@@ -36,8 +37,9 @@ struct Hub {
   const std::shared_ptr<Counts> counts;
   std::array<std::atomic<int>, kMaxChannels> num_watching{};  // clients, by channel
   std::set<std::shared_ptr<Client>> clients = {};
-  std::string sources = "[]";        // JSON
-  std::size_t num_answer_bytes = 0;  // found and not yet sent, of all clients
+  std::set<Connection*> connections = {};  // those that have not become clients
+  std::string sources = "[]";              // JSON
+  std::size_t num_answer_bytes = 0;        // found and not yet sent, of all clients
   bool is_ending = false;
   // Last, so that what waits in them goes first.
   boost::asio::io_context context{1};

@@ -5,10 +5,15 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <tuple>
 #include <utility>
 
+#include "common/io/network.hpp"
 #include "services/page/core/frame.hpp"
 #include "services/page/io/client.hpp"
 #include "services/page/io/connection.hpp"
@@ -24,6 +29,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kPauseAfterFault{100};
 constexpr std::chrono::seconds kTickPeriod{1};
+constexpr std::chrono::minutes kCrowdToldFor{1};
 constexpr std::chrono::milliseconds kMaxEnding{700};
 constexpr int kSendBufferBytes = 256 * 1024;
 constexpr std::size_t kMaxPublishedBytes = std::size_t{32} * 1024 * 1024;  // that the server's thread has not seen yet
@@ -32,9 +38,14 @@ constexpr std::size_t kMaxPublishedBytes = std::size_t{32} * 1024 * 1024;  // th
 
 struct Server::Implementation {
   Implementation(ServerOptions options, ServerParts parts) : hub(std::move(options), std::move(parts)) {
-    Listen();
+    const auto fault = Listen();
+    if (!fault.empty() && !hub.options.waits_for_port) throw std::runtime_error(fault);
     if (hub.parts.recordings) hub.sources = hub.parts.recordings->SourcesText();
-    Accept();
+    if (fault.empty()) {
+      Accept();
+    } else {
+      ListenLater();
+    }
     Tick();
     thread = std::thread([this] { Run(); });
   }
@@ -50,7 +61,8 @@ struct Server::Implementation {
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
 
-  void Listen() {
+  // @return why not, for people; empty: it listens
+  std::string Listen() {
     const auto& options = hub.options;
     try {
       const tcp::endpoint endpoint(asio::ip::make_address(options.bind_address), static_cast<std::uint16_t>(options.port));
@@ -59,14 +71,33 @@ struct Server::Implementation {
       acceptor.bind(endpoint);
       acceptor.listen();
     } catch (const boost::system::system_error& error) {
-      throw std::runtime_error("the page cannot be served on " + options.bind_address + " port " + std::to_string(options.port) + ": " +
-                               error.code().message());
+      error_code ignored;
+      acceptor.close(ignored);
+      return SetListenFault("the page cannot be served on " + options.bind_address + " port " + std::to_string(options.port) + ": " +
+                            io::CannotListenText(error.code().value(), options.port));
     }
-    port = acceptor.local_endpoint().port();
     const bool is_v6 = acceptor.local_endpoint().address().is_v6();
-    hub.own_hosts.port = port;
+    hub.own_hosts.port = acceptor.local_endpoint().port();
     hub.own_hosts.names = {"localhost", "127.0.0.1", "[::1]", is_v6 ? "[" + options.bind_address + "]" : options.bind_address};
     hub.own_hosts.names.insert(hub.own_hosts.names.end(), options.host_names.begin(), options.host_names.end());
+    port = acceptor.local_endpoint().port();
+    return SetListenFault({});
+  }
+
+  std::string SetListenFault(const std::string& fault) {
+    const std::lock_guard lock(faults_mutex);
+    listen_fault = fault;
+    return fault;
+  }
+
+  // Whoever has the port may end, and an address may come later.
+  void ListenLater() {
+    accept_pause.expires_after(io::kListenPause);
+    accept_pause.async_wait([this](error_code) {
+      if (hub.is_ending) return;
+      if (Listen().empty()) return Accept();
+      ListenLater();
+    });
   }
 
   void Run() {
@@ -99,7 +130,7 @@ struct Server::Implementation {
   }
 
   void Welcome(tcp::socket socket) {
-    if (hub.counts->Of("connections") >= hub.options.max_connections) {
+    if (hub.counts->Of("connections") >= hub.options.max_connections && !MakeRoom()) {
       hub.counts->Add("connections_refused");
       return;
     }
@@ -108,6 +139,33 @@ struct Server::Implementation {
     socket.set_option(asio::socket_base::keep_alive(true), ignored);
     socket.set_option(asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
     std::make_shared<Connection>(hub, std::move(socket))->Start();
+  }
+
+  // Who connects and asks for nothing keeps nobody out: for a new connection an old one is closed, of the address that holds most of them, first such
+  // as has asked for nothing yet. What looks at the page (a WebSocket) stays. @return whether there is room
+  bool MakeRoom() {
+    std::map<std::string_view, std::int64_t> number;
+    for (const auto* one : hub.connections) ++number[one->remote()];
+    const auto worth = [&number](const Connection* one) { return std::tuple(-number[one->remote()], one->stage(), one->since()); };
+    Connection* least = nullptr;
+    std::int64_t num_staying = static_cast<std::int64_t>(hub.clients.size());
+    for (auto* one : hub.connections) {
+      if (one->is_let_go()) continue;
+      ++num_staying;
+      if (least == nullptr || worth(one) < worth(least)) least = one;
+    }
+    // Such as were let go a moment ago are still counted.
+    if (num_staying < hub.options.max_connections) return true;
+    if (least == nullptr) return false;
+    hub.counts->Add("connections_let_go");
+    {
+      const std::lock_guard lock(faults_mutex);
+      crowd_text = std::to_string(hub.options.max_connections) + " connections at one time, " + std::to_string(number[least->remote()]) +
+                   " of them from " + least->remote() + ": the oldest are closed for new ones; end the program that connects and does not ask";
+      crowded_at = std::chrono::steady_clock::now();
+    }
+    least->LetGo();
+    return true;
   }
 
   // What a client does may take it off the list.
@@ -163,7 +221,11 @@ struct Server::Implementation {
   asio::steady_timer accept_pause{hub.context};
   asio::steady_timer tick{hub.context};
   SteadyTime end_since{};
-  int port = 0;
+  std::atomic<int> port = 0;
+  mutable std::mutex faults_mutex;  // of what stands here
+  std::string listen_fault;
+  std::string crowd_text;
+  std::optional<SteadyTime> crowded_at;
   std::atomic<bool> are_sources_new = false;
   std::atomic<std::size_t> num_published_bytes = 0;
   std::thread thread;
@@ -174,6 +236,15 @@ Server::Server(ServerOptions options, ServerParts parts) : implementation_(std::
 Server::~Server() = default;
 
 int Server::port() const { return implementation_->port; }
+
+std::vector<std::string> Server::Faults() const {
+  const auto& server = *implementation_;
+  const std::lock_guard lock(server.faults_mutex);
+  std::vector<std::string> faults;
+  if (!server.listen_fault.empty()) faults.push_back(server.listen_fault);
+  if (server.crowded_at && std::chrono::steady_clock::now() - *server.crowded_at < kCrowdToldFor) faults.push_back(server.crowd_text);
+  return faults;
+}
 
 bool Server::IsWatched(ChannelIndex channel) const { return channel < kMaxChannels && implementation_->hub.num_watching[channel] > 0; }
 

@@ -28,6 +28,7 @@ struct Asset {
 struct ServerOptions {
   std::string bind_address = "127.0.0.1";    // numeric
   int port = 0;                              // 0: any
+  bool waits_for_port = false;               // where it cannot be had now it is tried again and again, and Faults() says so
   std::vector<std::string> host_names = {};  // that `Host` may name besides the address bound to, localhost and 127.0.0.1; without port
   int max_clients = 16;                      // WebSockets
   int max_connections = 64;
@@ -56,21 +57,26 @@ struct ServerParts {
 /// Now: clients (WebSockets), connections. Since the start:
 /// requests (by HTTP), openings (of WebSockets), answers (out of recordings), acknowledgements, frames_sent, frames_replaced (a newer one came before
 /// there was room), frames_dropped (the server's own thread did not keep up); refused_host (421), refused_origin (403), refused_token (401),
-/// refused_full (503), refused_request (other refusals), connections_refused (too many), requests_late and answers_late (cut off), client_faults
+/// refused_full (503), refused_request (other refusals), connections_silent (asked for nothing), connections_let_go (closed for new ones),
+/// connections_refused (too many), requests_late and answers_late (cut off), client_faults
 /// (what a WebSocket should not have said), clients_silent (let go); accept_faults (no descriptor was left, say), faults (of the server: an
 /// exception, a map that cannot be read).
 using ServerCounts = std::map<std::string, std::int64_t, std::less<>>;
 
 class Server {
  public:
-  /// Listens when it returns.
-  /// @throws std::runtime_error when the address cannot be had
+  /// Listens when it returns, or waits for its port.
+  /// @throws std::runtime_error when the address cannot be had and is not waited for
   Server(ServerOptions options, ServerParts parts);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
+  /// 0 while it waits for it.
   int port() const;
+
+  /// What keeps browsers away, or did within the last minute, a sentence each.
+  std::vector<std::string> Faults() const;
 
   /// Whether any client watches the channel: else nobody needs its messages.
   bool IsWatched(ChannelIndex channel) const;

@@ -40,6 +40,9 @@ class Link {
   /// Why nothing can be sent now; empty = nothing is known to be wrong (a server without clients is no fault).
   virtual std::string fault() const = 0;
 
+  /// What is worth a line in the journal and no fault of this computer: nobody listens where UDP is sent; empty = nothing.
+  virtual std::string remark() const { return {}; }
+
   virtual std::vector<Counter> counters() const = 0;
 };
 

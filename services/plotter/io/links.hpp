@@ -53,8 +53,9 @@ struct WebSocketOptions {
 /// is dropped. A stream carries whole messages only, but for its last one.
 ///
 /// Counters of each link, behind `name`: _sent (messages that a receiver's computer has confirmed; over UDP: handed to the network), _dropped (the
-/// receiver was too slow, or was lost), _unsent (nobody was there, or the network refused it), _openings; of those that also receive: _received,
-/// _refused (too long, no text, or more than could wait); of a server: _clients (now), _clients_dropped (too slow), _clients_refused (too many).
+/// receiver was too slow, or was lost), _unsent (nobody was there, or the network refused it), _openings; over UDP: _unheard (the receiver's computer
+/// said that nobody listens there, or nobody knows that computer); of those that also receive: _received, _refused (too long, no text, or more than
+/// could wait); of a server: _clients (now), _clients_dropped (too slow), _clients_refused (too many).
 class Links {
  public:
   Links();
@@ -64,7 +65,8 @@ class Links {
 
   /// @throws std::runtime_error when the address is not numeric
   std::unique_ptr<Link> Udp(const UdpOptions& options);
-  /// @throws std::runtime_error when the address is not numeric or not one of this computer, or the port is in use
+  /// A port that is in use, or an address that this computer has not yet, is a fault() as well.
+  /// @throws std::runtime_error when the address is not numeric
   std::unique_ptr<Link> TcpServer(const TcpServerOptions& options);
   /// @throws std::runtime_error when the address is not numeric
   std::unique_ptr<Link> TcpClient(const TcpClientOptions& options);

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ip/v6_only.hpp>
-#include <stdexcept>
 
+#include "common/io/network.hpp"
 #include "services/plotter/io/ports.hpp"
 #include "services/plotter/io/tcp.hpp"
 
@@ -17,21 +17,11 @@ class TcpServerPort final : public Port {
   TcpServerPort(std::shared_ptr<Loop> loop, const TcpServerOptions& options)
       : Port(std::move(loop)),
         place_("TCP server at " + PlaceOf(options.bind_address, options.port)),
+        endpoint_(ParseAddress(options.name, options.bind_address), static_cast<std::uint16_t>(options.port)),
         max_clients_(static_cast<std::size_t>(options.max_clients)),
         names_(options.name, {"sent", "dropped", "unsent", "received", "refused", "openings", "clients", "clients_dropped", "clients_refused"}),
         acceptor_(context()) {
-    const tcp::endpoint endpoint(ParseAddress(options.name, options.bind_address), static_cast<std::uint16_t>(options.port));
-    boost::system::error_code error;
-    acceptor_.open(endpoint.protocol(), error);
-    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error && endpoint.address().is_v6()) acceptor_.set_option(boost::asio::ip::v6_only(true), error);
-    if (!error) acceptor_.bind(endpoint, error);
-    if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
-    if (!error) acceptor_.non_blocking(true, error);
-    if (error) {
-      const auto place = PlaceOf(options.bind_address, options.port);
-      throw std::runtime_error("output " + options.name + ": cannot listen at " + place + ": " + error.message());
-    }
+    Listen(std::chrono::steady_clock::now());
   }
 
   ~TcpServerPort() override {
@@ -44,7 +34,8 @@ class TcpServerPort final : public Port {
   }
 
   void Tick(SteadyTime now) override {
-    Accept();
+    if (!acceptor_.is_open() && now - last_attempt_ >= io::kListenPause) Listen(now);
+    if (acceptor_.is_open()) Accept();
     for (const auto& client : clients_) client->Tick(now);
     num_dropped_ += std::erase_if(clients_, [](const auto& client) { return client->state() == Connection::State::kClosed && client->is_late(); });
     std::erase_if(clients_, [](const auto& client) { return client->state() == Connection::State::kClosed; });
@@ -69,6 +60,22 @@ class TcpServerPort final : public Port {
   // Somebody who connects again and again must not keep the process here.
   static constexpr int kMaxAcceptedAtOnce = 16;
 
+  // A port that is taken, or an address that comes later, costs this output alone, and is tried again.
+  void Listen(SteadyTime now) {
+    last_attempt_ = now;
+    boost::system::error_code error;
+    acceptor_.open(endpoint_.protocol(), error);
+    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+    if (!error && endpoint_.address().is_v6()) acceptor_.set_option(boost::asio::ip::v6_only(true), error);
+    if (!error) acceptor_.bind(endpoint_, error);
+    if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
+    if (!error) acceptor_.non_blocking(true, error);
+    if (!error) return fault_.clear();
+    fault_ = place_ + ": " + io::CannotListenText(error.value(), endpoint_.port());
+    boost::system::error_code ignored;
+    acceptor_.close(ignored);
+  }
+
   void Accept() {
     for (int i = 0; i < kMaxAcceptedAtOnce; ++i) {
       tcp::socket socket(context());
@@ -90,12 +97,14 @@ class TcpServerPort final : public Port {
   }
 
   std::string place_;
+  tcp::endpoint endpoint_;
   std::size_t max_clients_;
   CounterNames names_;
   tcp::acceptor acceptor_;
   std::vector<std::shared_ptr<TcpConnection>> clients_;
   std::size_t num_dropped_ = 0;
   std::int64_t num_refused_ = 0;
+  SteadyTime last_attempt_{};
   std::string fault_;
 };
 

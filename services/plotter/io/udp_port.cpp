@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/error.hpp>
 #include <boost/asio/ip/multicast.hpp>
 #include <boost/asio/ip/udp.hpp>
 
@@ -25,8 +26,8 @@ class UdpPort final : public Port {
       : Port(std::move(loop)),
         destination_(ParseAddress(options.name, options.address), static_cast<std::uint16_t>(options.port)),
         interface_(options.interface),
-        place_("UDP to " + PlaceOf(options.address, options.port)),
-        names_(options.name, {"sent", "unsent", "openings"}),
+        place_(std::string(kTo) + PlaceOf(options.address, options.port)),
+        names_(options.name, {"sent", "unsent", "unheard", "openings"}),
         socket_(context()) {
     Open(std::chrono::steady_clock::now());
   }
@@ -42,7 +43,7 @@ class UdpPort final : public Port {
     socket_.send_to(boost::asio::buffer(message), destination_, 0, error);
     if (error) {
       // It may be what came of a message before: then this one was not tried yet.
-      Fail(error.message(), now);
+      NoteError(error, now);
       ForgetErrors();
       socket_.send_to(boost::asio::buffer(message), destination_, 0, error);
     }
@@ -51,7 +52,7 @@ class UdpPort final : public Port {
       return;
     }
     ++traffic_->num_unsent;
-    Fail(error.message(), now);
+    NoteError(error, now);
     // An interface that comes again is another one to the kernel.
     if (error == boost::system::errc::no_such_device || error == boost::system::errc::no_such_device_or_address) Close();
   }
@@ -62,17 +63,22 @@ class UdpPort final : public Port {
     last_tick_ += elapsed;
     if (!socket_.is_open()) {
       if (now - last_attempt_ >= kPause) Open(now);
-    } else if (!fault_.empty() && now - last_failure_ > kFaultHold) {
-      fault_.clear();
+    } else {
+      if (!fault_.empty() && now - last_failure_ > kFaultHold) fault_.clear();
+      if (!remark_.empty() && now - last_unheard_ > kFaultHold) remark_.clear();
     }
   }
 
   bool is_open() const override { return socket_.is_open(); }
   std::size_t room_bytes() const override { return room_bytes_; }
   std::string fault() const override { return fault_; }
-  std::vector<Counter> counters() const override { return names_.With({traffic_->num_sent, traffic_->num_unsent, traffic_->num_openings}); }
+  std::string remark() const override { return remark_; }
+  std::vector<Counter> counters() const override {
+    return names_.With({traffic_->num_sent, traffic_->num_unsent, num_unheard_, traffic_->num_openings});
+  }
 
  private:
+  static constexpr std::string_view kTo = "UDP to ";
   static constexpr std::chrono::seconds kPause{1};
   // A network tells of what it does not deliver after one message and stays silent after the next.
   static constexpr std::chrono::seconds kFaultHold{5};
@@ -101,6 +107,14 @@ class UdpPort final : public Port {
     }
     fault_.clear();
     ++traffic_->num_openings;
+  }
+
+  // A receiver is off or not yet started: that is no fault of the look-out, and mended by nobody here.
+  void NoteError(const boost::system::error_code& error, SteadyTime now) {
+    if (error != boost::asio::error::connection_refused && error != boost::asio::error::host_unreachable) return Fail(error.message(), now);
+    ++num_unheard_;
+    remark_ = "nobody listens at " + place_.substr(kTo.size()) + ": " + error.message();
+    last_unheard_ = now;
   }
 
   void Close() {
@@ -133,6 +147,9 @@ class UdpPort final : public Port {
   SteadyTime last_attempt_{};
   SteadyTime last_failure_{};
   std::string fault_;
+  std::int64_t num_unheard_ = 0;
+  SteadyTime last_unheard_{};
+  std::string remark_;
 };
 
 }  // namespace

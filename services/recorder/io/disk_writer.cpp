@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/io/disk_reserve.hpp"
 #include "common/io/output_file.hpp"
 
 namespace lookout::recorder {
@@ -26,10 +26,6 @@ constexpr std::chrono::milliseconds kWritePeriod(100);
 constexpr std::chrono::milliseconds kSyncPeriod(500);
 // Events are gathered in blocks of this size; one full block wakes the thread early.
 constexpr std::size_t kBlockBytes = 1024 * 1024;
-// A disk that was full must have a share of its reserve more than it, and room for some blocks, before a new log is begun: else each byte that is
-// freed makes one more small file.
-constexpr std::int64_t kResumeShareOfReserve = 10;
-constexpr std::int64_t kResumeBytes = 2 * kBlockBytes;
 // Marks of a file, for each 0.1 s at first. Of more every second one goes: they stay as far apart as a share of the file.
 constexpr std::size_t kMaxMarks = 4096;
 
@@ -49,11 +45,7 @@ Disk RealDisk() {
   Disk disk;
   disk.write = [](int descriptor, const void* data, std::size_t size) { return ::write(descriptor, data, size); };
   disk.sync = [](int descriptor) { return ::fdatasync(descriptor); };
-  disk.free_bytes = [](const std::filesystem::path& folder) -> std::int64_t {
-    struct statvfs state {};
-    if (::statvfs(folder.c_str(), &state) != 0) return -1;
-    return static_cast<std::int64_t>(state.f_bavail) * static_cast<std::int64_t>(state.f_frsize);
-  };
+  disk.free_bytes = io::FreeBytes;
   return disk;
 }
 
@@ -208,14 +200,14 @@ bool DiskWriter::HasRoomFor(const Block& block) {
     was_full = status_.is_full;
   }
   if (free_bytes < 0) return true;  // what is wrong there the write tells
-  const auto needed_bytes = limits_.reserve_bytes + (was_full ? limits_.reserve_bytes / kResumeShareOfReserve + kResumeBytes : 0);
+  const io::DiskReserve reserve(limits_.reserve_bytes);
+  const auto needed_bytes = was_full ? reserve.bytes_to_go_on() : reserve.bytes();
   if (free_bytes - static_cast<std::int64_t>(block.bytes.size()) >= needed_bytes) return true;
   CloseFile();
   const std::lock_guard lock(mutex_);
   status_.is_full = true;
   status_.is_recording = false;
-  status_.fault = folder_.string() + ": " + Megabytes(free_bytes) + " are free, " + Megabytes(limits_.reserve_bytes) +
-                  " of the disk are kept in reserve; move or delete logs";
+  status_.fault = folder_.string() + ": " + reserve.Text(free_bytes) + "; move or delete logs";
   return false;
 }
 

@@ -58,6 +58,9 @@ class SenderLock {
   /// nullopt while there is none.
   const std::optional<Sender>& holder(Stream stream) const { return streams_[static_cast<std::size_t>(stream)].holder; }
 
+  /// The holder, at its last valid packet.
+  Utime heard(Stream stream) const { return streams_[static_cast<std::size_t>(stream)].heard; }
+
   bool IsAllowed(const Sender& sender) const;
 
   /// Who holds a stream is void: a new run begins.

@@ -4,6 +4,7 @@
 
 #include "common/bus/memory_bus.hpp"
 #include "lookout/lidar_nmea_t.hpp"
+#include "lookout/lidar_scan_t.hpp"
 
 namespace lookout::runtime {
 namespace {
@@ -107,6 +108,35 @@ TEST(HealthReporter, TellsOfASecondPublisherForAMinuteAndKeepsTheCount) {
   EXPECT_EQ(message.state, health_t::STATE_OK) << message.reason;
   ASSERT_EQ(message.counters.back().name, "second_publisher");
   EXPECT_EQ(message.counters.back().count, 10);
+}
+
+// The recorder alone said that the bus loses messages, and nobody how many scans that costs.
+TEST(HealthReporter, SaysHowManyScansTheBusLost) {
+  bus::MemoryBus bus;
+  std::chrono::nanoseconds now{0};
+  bus.GuardStreams([&now] { return now; });
+  bus::Subscribe<lidar_scan_t>(bus, bus::kLidarScan, [](const lidar_scan_t&) {});
+  HealthReporter reporter("test");
+  EXPECT_EQ(reporter.Make(Utime(), {}, bus).state, health_t::STATE_OK);
+  for (std::int64_t seq = 0; seq < 20; ++seq) {
+    for (std::int32_t part = 0; part < 2; ++part) {
+      if ((seq == 5 && part == 1) || seq == 8) continue;
+      lidar_scan_t message{};
+      message.seq = seq;
+      message.utime_us = 100'000 * seq;
+      message.part_index = part;
+      message.num_parts = 2;
+      bus::Publish(bus, bus::kLidarScan, message);
+    }
+    now += std::chrono::milliseconds(100);
+    bus.ReleaseHeld();
+    while (bus.HandleOnce()) {
+    }
+  }
+  const auto message = reporter.Make(Utime(), {}, bus);
+  EXPECT_EQ(message.state, health_t::STATE_DEGRADED);
+  EXPECT_TRUE(message.reason.starts_with("lost on the bus in the last ")) << message.reason;
+  EXPECT_NE(message.reason.find(" s: 2 of 20 scans of LIDAR_SCAN (receive buffers too small"), std::string::npos) << message.reason;
 }
 
 // A report between two keeps what was measured over the last second: over some milliseconds a rate says nothing.

@@ -169,5 +169,16 @@ TEST(PageAssets, HoldThePage) {
   for (const auto* path : {"/", "/page.js", "/page.css", "/icon.svg"}) EXPECT_NE(std::ranges::find(paths, path), paths.end()) << path;
 }
 
+// HEALTH was ok while nothing came.
+TEST_F(PageService, SaysWhichInputsAreSilent) {
+  service_->AdvanceTo(now_);
+  EXPECT_EQ(service_->Report().state, HealthState::kOk);
+  service_->AdvanceTo(now_ + 1s);
+  SendAlert(alert_t::STATE_ACTIVE);
+  service_->AdvanceTo(now_ + 2s);
+  EXPECT_EQ(service_->Report().state, HealthState::kDegraded);
+  EXPECT_EQ(service_->Report().reason, "no LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, TRACKS for 2 s");
+}
+
 }  // namespace
 }  // namespace lookout::page

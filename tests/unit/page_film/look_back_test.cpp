@@ -94,6 +94,58 @@ TEST_F(OfLookBack, HoldsTheSpoolWithinItsBytes) {
   EXPECT_EQ(UtimesOf(back.Find(AtScan(kBeginUs + 399 * kScanUs, {kScanChannel})), bus::kLidarScan).size(), 2U);
 }
 
+// The spool began when the recorder stopped at its reserve, and ate it: 0 bytes were free.
+TEST_F(OfLookBack, WritesNothingIntoTheReserveOfTheDiskAndSaysWhy) {
+  std::atomic<std::int64_t> free_bytes = 1'000'000'000;
+  options_.reserve = io::DiskReserve(1'000'000'000);
+  options_.free_bytes = [&](const fs::path&) { return free_bytes.load(); };
+  std::atomic<int> num_told = 0;
+  options_.tell = [&](const std::string&) { ++num_told; };
+  LookBack back(options_);
+  for (std::int64_t seq = 0; seq < 20; seq += 5) {
+    Send(back, seq, seq + 5);
+    back.Flush();
+  }
+  EXPECT_EQ(NumFiles(), 0U);
+  EXPECT_EQ(back.Status().fault, options_.spool_folder.string() + ": 1000 MB are free, 1000 MB of the disk are kept in reserve; move or delete logs");
+  EXPECT_GT(back.Status().num_lost, 0);
+  EXPECT_EQ(num_told, 1);
+}
+
+TEST_F(OfLookBack, GivesBackItsOldestMinutesWhereTheDiskFillsAndSaysSo) {
+  std::atomic<std::int64_t> free_bytes = 4'000'000'000;
+  options_.reserve = io::DiskReserve(1'000'000'000);
+  options_.free_bytes = [&](const fs::path&) { return free_bytes.load(); };
+  options_.max_bytes = 50'000'000;
+  LookBack back(options_);
+  const auto held = [&] {
+    std::int64_t num_bytes = 0;
+    for (const auto& entry : fs::directory_iterator(options_.spool_folder)) num_bytes += static_cast<std::int64_t>(entry.file_size());
+    return num_bytes;
+  };
+  std::int64_t seq = 0;
+  const auto send_until = [&](std::int64_t end) {
+    for (; seq < end; seq += 5) {
+      Send(back, seq, seq + 5);
+      back.Flush();
+    }
+  };
+  send_until(600);  // 24 MB
+  EXPECT_GT(held(), 20'000'000);
+  EXPECT_EQ(back.Status().shortage, "");
+  free_bytes = options_.reserve.bytes_to_go_on() - 10'000'000;
+  send_until(605);
+  EXPECT_LT(held(), 18'000'000);
+  EXPECT_NE(back.Status().shortage.find("kept in reserve"), std::string::npos);
+  EXPECT_EQ(back.Status().fault, "");
+  EXPECT_FALSE(back.Find(AtScan(kBeginUs + 604 * kScanUs, {kScanChannel})).messages.empty());
+  free_bytes = 1'000'000'000;
+  send_until(610);
+  EXPECT_EQ(NumFiles(), 0U);
+  EXPECT_NE(back.Status().fault, "");
+  EXPECT_EQ(back.Status().shortage, "");
+}
+
 TEST_F(OfLookBack, RemovesItsSpoolAndWhatAKilledProcessLeft) {
   fs::create_directory(options_.spool_folder);
   support::WriteFile(options_.spool_folder / "look-back-000003.lcmlog.partial", "old");
@@ -216,6 +268,34 @@ TEST_F(OfLookBack, HasNoFaultOfItsSpoolWhileItFollowsTheRecorder) {
   }));
   back.Flush();
   EXPECT_EQ(back.Status().fault, "");
+}
+
+// The disk was full, a log was deleted, and nothing became free: the page had it open.
+TEST_F(OfLookBack, LetsGoOfALogThatIsRemovedToMakeRoom) {
+  options_.recorder_folder = folder_ / "logs";
+  fs::create_directory(*options_.recorder_folder);
+  LookBack back(options_);
+  const auto file = *options_.recorder_folder / "20260101T000001Z.lcmlog";
+  auto log = std::make_unique<SceneLog>(file);
+  std::int64_t seq = 0;
+  ASSERT_TRUE(WaitUntil([&] {
+    (*log)->Scan(seq++);
+    log->Flush();
+    return back.Status().is_following;
+  }));
+  back.Flush();
+  log.reset();
+  ASSERT_TRUE(WaitUntil([&] { return !back.Status().is_following; }));
+  const auto is_open = [&] {
+    std::error_code gone;
+    return std::ranges::any_of(fs::directory_iterator("/proc/self/fd"), [&](const auto& entry) {
+      return fs::read_symlink(entry.path(), gone).string().find(file.filename().string()) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(is_open()) << "what was read can be shown";
+  fs::remove(file);
+  EXPECT_TRUE(WaitUntil([&] { return !is_open(); }));
+  EXPECT_TRUE(back.Find(AtScan(kBeginUs, {kScanChannel})).messages.empty());
 }
 
 // One that is removed, by hand or to make room, between its being seen and its being opened.

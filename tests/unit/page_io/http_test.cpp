@@ -253,13 +253,65 @@ TEST_F(PageHttp, AThousandConnectionsLeaveRoomOnceTheyAreGone) {
   {
     std::vector<Peer> peers;
     for (int i = 0; i < 1000; ++i) peers.push_back(Connect());
-    EXPECT_TRUE(Until([&] { return CountOf(*server_, "connections_refused") == 1000 - 64; }));
-    EXPECT_EQ(CountOf(*server_, "connections"), 64);
-    EXPECT_TRUE(peers.back().Ends());
-    EXPECT_TRUE(IsStatus(peers.front().Get("/"), 200)) << "those that are in are served";
+    EXPECT_TRUE(Until([&] { return CountOf(*server_, "connections_let_go") == 1000 - 64; }));
+    EXPECT_TRUE(Until([&] { return CountOf(*server_, "connections") == 64; }));
+    EXPECT_TRUE(peers.front().Ends());
+    EXPECT_TRUE(IsStatus(peers.back().Get("/"), 200)) << "those that are in are served";
   }
   EXPECT_TRUE(Until([&] { return CountOf(*server_, "connections") == 0; }));
   EXPECT_TRUE(IsStatus(Get("/"), 200));
+}
+
+// 64 connections that asked for nothing kept every new browser out, and nothing said so.
+TEST_F(PageHttp, ConnectionsThatDoNotAskKeepNobodyOut) {
+  std::vector<Peer> silent;
+  for (int i = 0; i < 64; ++i) {
+    silent.push_back(Connect());
+    if (i % 3 == 0) silent.back().Write("GET / HTTP/1.1\r\nHo");  // half a request
+    if (i % 3 == 1) {
+      EXPECT_TRUE(IsStatus(silent.back().Get("/"), 200)) << "and no second request";
+    }
+  }
+  EXPECT_TRUE(Until([&] { return CountOf(*server_, "connections") == 64; }));
+  EXPECT_TRUE(server_->Faults().empty());
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(IsStatus(Get("/"), 200)) << i;
+  EXPECT_EQ(CountOf(*server_, "connections_refused"), 0);
+  EXPECT_GE(CountOf(*server_, "connections_let_go"), 1);
+  ASSERT_EQ(server_->Faults().size(), 1U);
+  EXPECT_TRUE(server_->Faults()[0].starts_with("64 connections at one time, 64 of them from 127.0.0.1: ")) << server_->Faults()[0];
+  EXPECT_TRUE(silent[0].Ends(1s)) << "the oldest that has asked for nothing";
+  EXPECT_TRUE(IsStatus(silent[1].Get("/"), 200)) << "one that has asked is worth more";
+}
+
+// A port that was taken ended the process, and lookout-up did not start the look-out for it.
+TEST_F(PageHttp, WaitsForItsPortAndSaysWhoHasIt) {
+  const int port = server_->port();
+  ServerOptions options;
+  options.port = port;
+  EXPECT_THROW(Server(options, {}), std::runtime_error) << "where it is not told to wait";
+  auto holder = std::move(server_);
+  options.waits_for_port = true;
+  Server waiting(options, {});
+  EXPECT_EQ(waiting.port(), 0);
+  ASSERT_EQ(waiting.Faults().size(), 1U);
+  EXPECT_TRUE(waiting.Faults()[0].starts_with("the page cannot be served on 127.0.0.1 port " + std::to_string(port) + ": the port is taken by "))
+      << waiting.Faults()[0];
+  EXPECT_NE(waiting.Faults()[0].find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << waiting.Faults()[0];
+  holder.reset();
+  EXPECT_TRUE(Until([&] { return waiting.port() == port; }));
+  EXPECT_TRUE(waiting.Faults().empty());
+  EXPECT_TRUE(IsStatus(Peer(port).Get("/none"), 404));
+}
+
+// What looks at the page stays.
+TEST_F(PageHttp, AWebSocketIsNotClosedForOthers) {
+  Browser browser(server_->port());
+  ASSERT_TRUE(browser.hello().Holds("hello"));
+  std::vector<Peer> silent;
+  for (int i = 0; i < 200; ++i) silent.push_back(Connect());
+  EXPECT_TRUE(Until([&] { return CountOf(*server_, "connections_let_go") == 200 - 63; }));
+  EXPECT_EQ(CountOf(*server_, "clients"), 1);
+  EXPECT_FALSE(browser.Ends(200ms));
 }
 
 // The listener must not stop, nor turn round as fast as it can.

@@ -106,9 +106,23 @@ TEST_F(SegmenterService, TellsOfARefusalForAMinuteWhereNothingFollows) {
   Send(message);
   for (int second = 0; second < 59; ++second) service_.AdvanceTo(now += std::chrono::seconds(1));
   EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(service_.Report().reason, "no LIDAR_SCAN for 59 s; the latest LIDAR_SCAN was refused: refused_azimuth");
+  service_.AdvanceTo(now += std::chrono::seconds(1));
+  EXPECT_EQ(service_.Report().reason, "no LIDAR_SCAN for 60 s");
+  EXPECT_EQ(Count("refused_azimuth"), 1);
+}
+
+// HEALTH stayed ok while no scan came.
+TEST_F(SegmenterService, SaysThatNoScansCome) {
+  Utime now{std::chrono::seconds(1'800'000'000)};
+  service_.AdvanceTo(now);
+  EXPECT_EQ(service_.Report().state, HealthState::kOk);
+  service_.AdvanceTo(now += std::chrono::seconds(2));
+  EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(service_.Report().reason, "no LIDAR_SCAN for 2 s");
+  Send(test::ScanMessages(LakeInRain(), 7, 1)[0]);
   service_.AdvanceTo(now += std::chrono::seconds(1));
   EXPECT_EQ(service_.Report().state, HealthState::kOk) << service_.Report().reason;
-  EXPECT_EQ(Count("refused_azimuth"), 1);
 }
 
 TEST_F(SegmenterService, RefusesAndCountsWrongMessagesAndGoesOn) {

@@ -265,6 +265,14 @@ TEST_F(TrackerService, GivesUpAWaitByTheHostsClock) {
   EXPECT_NE(service_.Report().reason.find("do not come with OBSTACLES"), std::string::npos) << service_.Report().reason;
 }
 
+TEST_F(TrackerService, SaysWhichInputsAreSilent) {
+  service_.AdvanceTo(Host(milliseconds(0)));
+  service_.AdvanceTo(Host(milliseconds(1500)));
+  SendSight(0, 0);
+  service_.AdvanceTo(Host(milliseconds(2000)));
+  EXPECT_TRUE(service_.Report().reason.ends_with("no OBSTACLES for 2 s; no POSE for 2 s")) << service_.Report().reason;
+}
+
 TEST_F(TrackerService, SaysWhenNobodyLooksAndTakesNoteOfIt) {
   SendPoses(0, 10'000'000);
   std::int64_t host_ms = 0;

@@ -291,6 +291,28 @@ TEST(SenderLock, PassesToAnotherPortOfTheSameAddressAfterOneSecond) {
   EXPECT_EQ(both.report.reason, "");
 }
 
+// It was told as "two lidars on one port", the lidar beside itself.
+TEST(SenderLock, TellsOfALidarThatStartsAgainAsOfOne) {
+  LockRun run;
+  run.Feed(OfLidar(seconds(0), seconds(2), kLidar.address, 40'000));
+  run.Feed(OfLidar(milliseconds(2100), milliseconds(2500), kLidar.address, 40'001));
+  const auto restarted = run.published();
+  EXPECT_TRUE(restarted.report.reason.starts_with("the lidar at 192.168.1.201 has started again: it sends to port ")) << restarted.report.reason;
+  EXPECT_NE(restarted.report.reason.find(", before from 4"), std::string::npos) << restarted.report.reason;
+  run.Feed(OfLidar(milliseconds(2500), seconds(6), kLidar.address, 40'001));
+  const auto after = run.published();
+  EXPECT_EQ(after.report.reason, "");
+  EXPECT_EQ(std::ranges::count(after.notices, "uses the lidar at 192.168.1.201:40001; it started again, before it sent from port 40000"), 1);
+  EXPECT_TRUE(std::ranges::none_of(after.notices, [](const std::string& line) { return line.find("two lidars") != std::string::npos; }));
+}
+
+// A forwarder that runs twice, say.
+TEST(SenderLock, TellsOfTwoThatSendFromOneAddress) {
+  const auto both =
+      Of(MergedArrivals({OfLidar(seconds(0), seconds(3), kLidar.address, 40'000), OfLidar(milliseconds(1003), seconds(3), kLidar.address, 40'001)}));
+  EXPECT_TRUE(both.report.reason.starts_with("two programs at 192.168.1.201 send packets of a lidar to port ")) << both.report.reason;
+}
+
 TEST(SenderLock, IsKeptWhileTwoLidarsAlternate) {
   Arrivals first;
   Arrivals second;
