@@ -28,6 +28,9 @@ class InputWatch {
 
   /// Host time has come so far. Once a second or more.
   void AdvanceTo(Utime host_time) {
+    // A clock that was set forward, or a process that stood still, is no silence of the others.
+    constexpr std::chrono::seconds kLongestStep{10};
+    if (now_ && seen_ && host_time - *now_ > kLongestStep) *seen_ += host_time - *now_;
     now_ = host_time;
     // Waiting begins with the first call, or again where the host's clock was set back.
     seen_ = std::min(seen_.value_or(host_time), host_time);

@@ -59,7 +59,10 @@ void TextFile::Seek(std::int64_t position) {
     next_ = 0;
     Begin();
   }
-  while (position > buffer_begin_ + static_cast<std::int64_t>(buffer_.size()) && Fill()) {
+  // What lies before the position is not kept on the way to it.
+  while (position > buffer_begin_ + static_cast<std::int64_t>(buffer_.size())) {
+    next_ = buffer_.size();
+    if (!Fill()) break;
   }
   next_ = static_cast<std::size_t>(std::min(position - buffer_begin_, static_cast<std::int64_t>(buffer_.size())));
 }

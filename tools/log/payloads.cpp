@@ -10,6 +10,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/core/log_time.hpp"
 #include "common/core/sentence.hpp"
 #include "common/messages/checks.hpp"
 #include "common/messages/pose_message.hpp"
@@ -35,7 +36,6 @@
 #include "services/vlp16/core/packet_format.hpp"
 #include "services/vlp16/core/position_packet.hpp"
 #include "services/vlp16/wire.hpp"
-#include "tools/log/time_text.hpp"
 
 namespace lookout::log {
 

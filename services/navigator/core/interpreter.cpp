@@ -208,8 +208,13 @@ std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& sourc
   if (source.time_zone.IsLocal(item.time, sentence)) {
     ++counts_["local_time"];
     // Behind the fix of its epoch it is of the same instant.
-    const bool is_of_epoch = source.epoch && item.time - source.epoch->fix.when.arrival <= UtcClock::kBurst;
-    return is_of_epoch ? source.epoch->fix.when : WhenArrived(item, source, sentence.type);
+    if (!source.epoch) return WhenArrived(item, source, sentence.type);
+    const auto& epoch = source.epoch->fix.when;
+    if (item.time - epoch.arrival <= UtcClock::kBurst) return epoch;
+    // It tells the place of an epoch that is over: at its arrival it would draw a boat that moves back.
+    constexpr std::chrono::seconds kTimedFixes(2);
+    if (epoch.has_sentence_utc && item.time - epoch.arrival <= kTimedFixes) return std::nullopt;
+    return WhenArrived(item, source, sentence.type);
   }
   source.time_zone.Know(item.time, sentence);
   if (sentence.position && is_measured && source.standing_utc.Stands(item.time, sentence)) {
@@ -270,7 +275,8 @@ void Interpreter::CompleteFix(Source& source, GnssFix& fix) {
 Reading Interpreter::ReadFix(const Item& item, Source& source, const Sentence& said) {
   const bool is_vectornav = said.type == SentenceType::kVnIns;
   Sentence sentence = said;
-  if (said.position && IsNull(*said.position)) {
+  const bool is_null = said.position && IsNull(*said.position);
+  if (is_null) {
     ++counts_["null_fix"];
     source.null_fix = item.time;
     sentence.position.reset();
@@ -280,7 +286,8 @@ Reading Interpreter::ReadFix(const Item& item, Source& source, const Sentence& s
     source.null_fix.reset();
   }
   const bool is_measured = IsMeasured(sentence.quality);
-  const auto when = When(item, source, sentence, is_measured);
+  // A sentence at 0 N 0 E beside measured ones does not unlearn the clock that they taught.
+  const auto when = When(item, source, sentence, is_measured || (is_null && source.clock.has_measured));
   if (!when) return {};
   if (is_measured) source.declination_rad = Or(sentence.declination_rad, source.declination_rad);
   Reading reading;

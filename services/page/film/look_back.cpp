@@ -270,6 +270,10 @@ struct LookBack::Implementation {
       spool.DropOldest();
     }
     recording.DropBefore(from);
+    // Whole files are dropped, so it may be short of some.
+    if (recording.timeline().is_empty() || 10 * (recording.timeline().end() - recording.timeline().begin()) < 9 * options.span) return;
+    const std::scoped_lock status_lock(status_mutex);
+    status.shortage.clear();  // it holds all that it should again
   }
 
   void TellShortage() {

@@ -141,12 +141,12 @@ struct Server::Implementation {
     std::make_shared<Connection>(hub, std::move(socket))->Start();
   }
 
-  // Who connects and asks for nothing keeps nobody out: for a new connection an old one is closed, of the address that holds most of them, first such
-  // as has asked for nothing yet. What looks at the page (a WebSocket) stays. @return whether there is room
+  // Who connects and asks for nothing keeps nobody out: for a new connection an old one is closed, first such as has asked for nothing yet, of the
+  // address that holds most of them. What looks at the page (a WebSocket) stays. @return whether there is room
   bool MakeRoom() {
     std::map<std::string_view, std::int64_t> number;
     for (const auto* one : hub.connections) ++number[one->remote()];
-    const auto worth = [&number](const Connection* one) { return std::tuple(-number[one->remote()], one->stage(), one->since()); };
+    const auto worth = [&number](const Connection* one) { return std::tuple(one->stage(), -number[one->remote()], one->since()); };
     Connection* least = nullptr;
     std::int64_t num_staying = static_cast<std::int64_t>(hub.clients.size());
     for (auto* one : hub.connections) {
@@ -157,6 +157,8 @@ struct Server::Implementation {
     // Such as were let go a moment ago are still counted.
     if (num_staying < hub.options.max_connections) return true;
     if (least == nullptr) return false;
+    // Each that was let go holds memory until the disk has answered it.
+    if (static_cast<std::int64_t>(hub.connections.size()) >= 2 * hub.options.max_connections) return false;
     hub.counts->Add("connections_let_go");
     {
       const std::lock_guard lock(faults_mutex);

@@ -24,6 +24,7 @@ constexpr int kOptionEnd = 0;
 constexpr int kOptionResolution = 9;  // if_tsresol
 constexpr int kOptionOffset = 14;     // if_tsoffset
 constexpr std::size_t kOptionHeadBytes = 4;
+constexpr std::size_t kMostInterfaces = 65536;  // a packet of the older form numbers no more
 
 constexpr std::size_t kBlockHeadBytes = 8;   // type, length
 constexpr std::size_t kBlockEdgeBytes = 12;  // and the length once more at its end
@@ -152,6 +153,7 @@ bool PcapngReader::AddInterface() {
     }
     place += Padded(size);
   }
+  if (interfaces_.size() >= kMostInterfaces) return Fail("more than 65536 interfaces in a section");
   interfaces_.push_back(interface);
   if (std::ranges::find(link_types_, interface.link_type) == link_types_.end()) link_types_.push_back(interface.link_type);
   return true;
