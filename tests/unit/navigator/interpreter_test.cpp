@@ -456,13 +456,20 @@ TEST_F(InterpreterTest, RefusesTheTimeOfAnotherZoneBesideUtc) {
       ASSERT_TRUE(rmc && rmc->when.is_from_sentence) << i;
       EXPECT_EQ(rmc->when.utc, NoonPlus(i));
       const auto gll = Read(i + 0.5, Line("GPGLL,5000.0000,N,00800.0000,E," + TimeOfDay(NoonPlus(i + zone_s + 3.3)) + ",A")).fix;
-      ASSERT_TRUE(gll);
-      EXPECT_EQ(gll->when.time, NoonPlus(i + 0.5)) << "at its arrival";
-      EXPECT_FALSE(gll->when.has_sentence_utc);
+      EXPECT_FALSE(gll) << "it tells the place of 0.3 s ago, which would draw a fast boat back";
     }
     EXPECT_EQ(Count("local_time"), 20);
     EXPECT_EQ(Count("time_backwards"), 0);
   }
+}
+
+// The receiver with the right time is gone: better a place of some seconds than none.
+TEST_F(InterpreterTest, UsesAPlaceInAnotherZoneAtItsArrivalWhereNoOtherComes) {
+  for (int i = 0; i < 20; ++i) Read(i + 0.2, RmcLine(NoonPlus(i), 50.0, 8.0, 2.0, 30.0));
+  const auto gll = Read(23.5, Line("GPGLL,5000.0000,N,00800.0000,E," + TimeOfDay(NoonPlus(7223.3)) + ",A")).fix;
+  ASSERT_TRUE(gll);
+  EXPECT_EQ(gll->when.time, NoonPlus(23.5)) << "at its arrival";
+  EXPECT_FALSE(gll->when.has_sentence_utc);
 }
 
 TEST_F(InterpreterTest, WhatIsRightBehindAFixIsOfItsInstantInWhateverZone) {

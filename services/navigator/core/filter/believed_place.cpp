@@ -36,9 +36,9 @@ BelievedPlace::Verdict BelievedPlace::Judge(Utime time, const GeodeticPlace& ant
   const Run first{time, time, place, sd_m, 0};
   if (!believed_) believed_ = first;
   const bool is_doubted = doubted_ && IsWithinReach(*doubted_, time, place, sd_m);
-  // Reach grows while fixes are held. It does not make those right that are farther off than a boat gets in the longest hold; what is nearer may be
+  // Reach grows while fixes are held. It does not make those right that are farther off than a boat gets in the shortest hold; what is nearer may be
   // the step of a receiver that had stood still, and the gates of the filter are for it.
-  const bool is_far = DistanceM(*believed_, place) > kMostSpeedMps * ToSeconds(kMostHold);
+  const bool is_far = DistanceM(*believed_, place) > kMostSpeedMps * ToSeconds(kLeastHold);
   const bool is_nearer = is_far && is_doubted && DistanceM(*doubted_, place) < DistanceM(*believed_, place);
   if (!is_nearer && IsWithinReach(*believed_, time, place, sd_m)) {
     Add(time, place, sd_m, *believed_);
