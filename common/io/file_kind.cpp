@@ -79,7 +79,7 @@ FileKind KindOfState(mode_t mode) {
 
 // As a shell takes it.
 std::string Word(const std::filesystem::path& file) {
-  const std::string name = file.string();
+  auto name = file.string();
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:@%";
   if (!name.empty() && name.find_first_not_of(kPlain) == std::string::npos) return name;
   std::string quoted = "'";

@@ -62,7 +62,7 @@ std::string HolderOf(int port) {
       if (!sockets.contains(fs::read_symlink(file->path(), gone).string())) continue;
       std::string name;
       std::getline(std::ifstream(process->path() / "comm"), name);
-      return name + " (pid " + pid + ")";
+      return name.append(" (pid ").append(pid).append(")");
     }
   }
   return {};

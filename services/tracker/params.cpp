@@ -53,6 +53,7 @@ std::vector<float> ExpectedElevations(const std::filesystem::path& config_folder
     if (lidar.model() == config::Vlp16::MODEL_PUCK_HI_RES) most_deg = 10.0;
   });
   std::vector<float> elevation_rad;
+  elevation_rad.reserve(kNumBeams);
   for (int i = 0; i < kNumBeams; ++i) elevation_rad.push_back(static_cast<float>(DegToRad(most_deg * (2.0 * i / (kNumBeams - 1) - 1.0))));
   return elevation_rad;
 }

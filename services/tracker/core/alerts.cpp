@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -240,7 +239,7 @@ void Alerts::TellPlaces(Entry& entry, const Key& key, const Acknowledgement& ack
                   [&entry](const DangerPlace& place) { return std::fabs(WrapToPi(place.bearing_rad - entry.alert->bearing_rad)) > kKeptSideRad; });
   }
   entry.told->Tell(shown_at, places);
-  for (const auto& later : entry.shown | std::views::drop(1)) entry.told->Untold(later.time, later.places);
+  for (std::size_t i = 1; i < entry.shown.size(); ++i) entry.told->Untold(entry.shown[i].time, entry.shown[i].places);
 }
 
 void Alerts::ForgetMap() {

@@ -28,8 +28,8 @@ constexpr double kMeanRestRad = DegToRad(60.0);
 constexpr std::array kEnds{0.10536, 0.35667, 0.69315, 1.20397, 2.30259};
 constexpr std::size_t kMedian = 2;
 constexpr double kStepRad = DegToRad(10.0);
-constexpr double kLongestStepS = 0.5;
-constexpr double kShortestStepS = 0.1;
+constexpr double kMostTurnStepS = 0.5;
+constexpr double kLeastTurnStepS = 0.1;
 constexpr double kLeastSdM = 0.05;
 
 Eigen::Vector2d Middle(const std::vector<Eigen::Vector2d>& corners_m) {
@@ -119,7 +119,7 @@ ClosestApproach ApproachInTurns(const Moving& own, const Moving& other, const Re
   const double sd_m = GreatestSdM(After(covariance, params.look_ahead_s));
   if (middles_m - radii_m - speeds_mps * params.look_ahead_s > params.limit_m + 4.0 * sd_m) return approach;  // out of reach, whatever the turn
 
-  const double most_step_s = std::min(std::clamp(params.limit_m / speeds_mps, kShortestStepS, kLongestStepS), kStepRad / rate_radps);
+  const double most_step_s = std::min(std::clamp(params.limit_m / speeds_mps, kLeastTurnStepS, kMostTurnStepS), kStepRad / rate_radps);
   Nearest nearest{approach.distance_m, 0.0, GreatestSdM(covariance)};  // on the arc so far
   double time_s = 0.0;
   double sum = 0.0;

@@ -24,8 +24,8 @@ class TurnWatch {
  private:
   struct Look {
     Utime time;
-    double heading_rad;
-    double course_rad;  // NaN: too slow to have one
+    double heading_rad = 0.0;
+    double course_rad = kNan;  // NaN: too slow to have one
   };
   std::deque<Look> looks_;
 };

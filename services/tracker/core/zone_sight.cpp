@@ -68,7 +68,7 @@ struct ZoneGrid::Beams {
 };
 
 ZoneGrid::ZoneGrid(const ZoneSightParams& params, std::span<const float> elevation_rad, double top_m)
-    : range_m_(params.zone.range_m), range_step_m_(params.zone.range_m / kNumRanges), bearing_(params.zone.bearing) {
+    : range_step_m_(params.zone.range_m / kNumRanges), bearing_(params.zone.bearing) {
   const double width_rad = std::min(bearing_.width_rad, kTwoPi);
   num_bearings_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(width_rad / kBearingStepRad)));
   bearing_step_rad_ = width_rad / static_cast<double>(num_bearings_);

@@ -97,7 +97,6 @@ class ZoneGrid {
   void AddParts(Unseen reason, std::span<const Unseen> why, std::vector<UnseenPart>& parts) const;
   UnseenPart ToPart(Unseen reason, std::size_t first, std::size_t count, std::span<const std::optional<Run>> runs) const;
 
-  double range_m_;
   double range_step_m_;
   Sector bearing_;
   std::size_t num_bearings_;
