@@ -144,6 +144,7 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
   }
 
   std::vector<Danger> dangers;
+  dangers.reserve(in_zone.size());
   for (const auto& [track_id, found] : in_zone) {
     dangers.push_back(DangerOf(track_id, *found.nearest, track_id == kLandTrack ? shore.Places() : found.things, own));
   }
