@@ -15,12 +15,7 @@ namespace lookout::tracker {
 
 namespace {
 
-constexpr std::chrono::milliseconds kOver{1000};
-constexpr std::chrono::milliseconds kLeastOver{800};
-// The end of a turn shows in the heading first.
-constexpr std::chrono::milliseconds kLately{400};
-// Over a second headings of a filter err by 0.3 deg; the wander of a helmsman who holds a course is below 2 deg/s.
-constexpr double kTurnsRadps = DegToRad(3.0);
+constexpr std::chrono::milliseconds kLongestGap{1000};
 constexpr double kLeastSpeedMps = 0.5;
 // The heading changes by so much more, in the mean. Chosen: an avoiding action is 30 to 60 deg, the corner of a channel or a round turn 90 to 180.
 constexpr double kMeanRestRad = DegToRad(60.0);
@@ -31,6 +26,11 @@ constexpr double kStepRad = DegToRad(10.0);
 constexpr double kMostTurnStepS = 0.5;
 constexpr double kLeastTurnStepS = 0.1;
 constexpr double kLeastSdM = 0.05;
+
+// Over a second headings of a filter err by 0.3 deg, and courses by 2 deg at the speed of a walk; a helmsman who holds a course wanders by less than
+// 1 deg/s over three seconds. The end of a turn shows in the heading first.
+constexpr TurnLook kQuickTurn{std::chrono::milliseconds(1000), std::chrono::milliseconds(800), std::chrono::milliseconds(400), DegToRad(3.0)};
+constexpr TurnLook kSlowTurn{std::chrono::milliseconds(3000), std::chrono::milliseconds(2800), std::chrono::milliseconds(1000), DegToRad(1.5)};
 
 Eigen::Vector2d Middle(const std::vector<Eigen::Vector2d>& corners_m) {
   Eigen::Vector2d from = corners_m.front();
@@ -71,21 +71,28 @@ struct Nearest {
 }  // namespace
 
 double TurnWatch::Update(Utime time, double heading_rad, const Eigen::Vector2d& velocity_mps) {
-  if (!looks_.empty() && (time <= looks_.back().time || time - looks_.back().time > kOver)) looks_.clear();
+  if (!looks_.empty() && (time <= looks_.back().time || time - looks_.back().time > kLongestGap)) looks_.clear();
   const bool has_course = velocity_mps.norm() >= kLeastSpeedMps;  // false where it is NaN
   looks_.push_back({time, heading_rad, has_course ? Atan2(velocity_mps.x(), velocity_mps.y()) : kNan});
-  while (looks_.size() > 2 && time - looks_[1].time >= kOver) looks_.pop_front();
-  const auto& before = looks_.front();
-  const auto& now = looks_.back();
-  if (now.time - before.time < kLeastOver || std::isnan(before.course_rad) || std::isnan(now.course_rad)) return 0.0;
-  const auto lately = std::ranges::find_if(looks_, [&now](const Look& look) { return now.time - look.time <= kLately; });
-  const auto rate = [&now](const Look& since, double Look::*angle_rad) {
-    return now.time > since.time ? WrapToPi(now.*angle_rad - since.*angle_rad) / ToSeconds(now.time - since.time) : 0.0;
+  while (looks_.size() > 2 && time - looks_[1].time >= kSlowTurn.over) looks_.pop_front();
+  const double quick_radps = RateOf(kQuickTurn);
+  return quick_radps != 0.0 ? quick_radps : RateOf(kSlowTurn);
+}
+
+double TurnWatch::RateOf(const TurnLook& look) const {
+  const auto since = [this](std::chrono::milliseconds longest) {
+    return std::ranges::find_if(looks_, [&](const Look& one) { return looks_.back().time - one.time <= longest; });
   };
-  const std::array rates_radps{rate(before, &Look::heading_rad), rate(before, &Look::course_rad), rate(*lately, &Look::heading_rad)};
+  const auto& now = looks_.back();
+  const auto& before = *since(look.over);
+  if (now.time - before.time < look.least_over || std::isnan(before.course_rad) || std::isnan(now.course_rad)) return 0.0;
+  const auto rate = [&now](const Look& then, double Look::*angle_rad) {
+    return now.time > then.time ? WrapToPi(now.*angle_rad - then.*angle_rad) / ToSeconds(now.time - then.time) : 0.0;
+  };
+  const std::array rates_radps{rate(before, &Look::heading_rad), rate(before, &Look::course_rad), rate(*since(look.lately), &Look::heading_rad)};
   const auto least = *std::ranges::min_element(rates_radps, {}, [](double radps) { return std::fabs(radps); });
   const bool is_one_way = std::ranges::all_of(rates_radps, [least](double radps) { return radps * least > 0.0; });
-  return is_one_way && std::fabs(least) >= kTurnsRadps ? least : 0.0;
+  return is_one_way && std::fabs(least) >= look.least_radps ? least : 0.0;
 }
 
 Moving AfterTurn(const Moving& moving, double time_s) {

@@ -2,19 +2,29 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chrono>
 #include <deque>
 
+#include "common/core/elementary.hpp"
 #include "common/core/utime.hpp"
 #include "services/tracker/core/encounter.hpp"
 
 namespace lookout::tracker {
 
+/// Over which time a turn is looked for.
+struct TurnLook {
+  std::chrono::milliseconds over;
+  std::chrono::milliseconds least_over;
+  std::chrono::milliseconds lately;  // the heading must still turn
+  double least_radps;
+};
+
 /// How fast the way of the own boat bends.
 class TurnWatch {
  public:
-  /// Scan by scan. Over the last second, and only where heading and course over ground turn the same way: a boat that yaws in waves goes straight on,
-  /// and one that turns on the spot goes nowhere. The end of a turn shows in the heading of the last 0.4 s. Of these rates the least counts.
-  /// A gap of more than 1 s, or time that goes back, begins anew.
+  /// Scan by scan. Over the last second from 3 deg/s on, over the last three from 1.5 deg/s on, and only where heading and course over ground turn
+  /// the same way: a boat that yaws in waves goes straight on, and one that turns on the spot goes nowhere. The end of a turn shows in the heading of
+  /// the last 0.4 s (1 s of a slow one). Of these rates the least counts. A gap of more than 1 s, or time that goes back, begins anew.
   /// @param heading_rad   from north, clockwise
   /// @param velocity_mps  over ground, east and north; NaN: not known
   /// @return clockwise; 0 where it does not turn, or not for long enough to be known
@@ -27,6 +37,8 @@ class TurnWatch {
     double heading_rad = 0.0;
     double course_rad = kNan;  // NaN: too slow to have one
   };
+  double RateOf(const TurnLook& look) const;
+
   std::deque<Look> looks_;
 };
 

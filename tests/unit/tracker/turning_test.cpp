@@ -127,6 +127,20 @@ TEST_F(TurnWatchTest, KnowsTheEndOfATurnWithinHalfASecond) {
   EXPECT_EQ(rate_degps, 0.0);
 }
 
+// Round a lake at 2 deg/s: in 30 s that is 60 deg.
+TEST_F(TurnWatchTest, KnowsASlowTurnAfterThreeSeconds) {
+  for (int i = 0; i < 28; ++i) EXPECT_EQ(Scan(0.2 * i, 0.2 * i), 0.0) << i;
+  double rate_degps = 0.0;
+  for (int i = 28; i < 40; ++i) rate_degps = Scan(0.2 * i, 0.2 * i);
+  EXPECT_NEAR(rate_degps, 2.0, 0.1);
+  for (int i = 0; i < 7; ++i) rate_degps = Scan(8.0, 8.0);
+  EXPECT_EQ(rate_degps, 0.0) << "it has ended";
+}
+
+TEST_F(TurnWatchTest, TakesTheWanderOfAHelmsmanForNoTurn) {
+  for (int i = 0; i < 600; ++i) EXPECT_EQ(Scan(90.0 + 2.5 * std::sin(0.05 * i), 90.0 + 2.5 * std::sin(0.05 * i - 0.2)), 0.0) << i;
+}
+
 TEST_F(TurnWatchTest, TakesYawInWavesForNoTurn) {
   for (int i = 0; i < 200; ++i) EXPECT_EQ(Scan(90.0 + 6.0 * std::sin(0.15 * i), 90.0 + 0.5 * std::sin(0.9 * i)), 0.0);
 }
