@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import re
 import subprocess
 import time
 
@@ -18,6 +19,7 @@ output { name: "miles" format: NMEA0183 udp { address: "127.0.0.1" port: 20002 }
 output { name: "tll" format: NMEA0183 udp { address: "127.0.0.1" port: 20003 } targets: TLL target_talker: "SN" }
 '''
 PORTS = (20001, 20002, 20003)
+TELLS = re.compile(r'(closest approach|CPA) 2\.5 m')  # in short words where the whole text does not fit
 ALERTS = {20001: (True, False), 20002: (False, True), 20003: (False, False)}  # ALF, ALR
 TARGETS = {1, 2, 17, 18, 19, 20, 123456}
 LOST, LATE, TENTATIVE = 19, 123456, 21
@@ -194,11 +196,11 @@ class Output:
 
     def check_alerts(self):
         if 'ALR' in self.counts:
-            mine = [fields[2:4] for fields in self.alerts if fields[1] == '004' and 'closest approach 2.5 m' in fields[4]]
+            mine = [fields[2:4] for fields in self.alerts if fields[1] == '004' and TELLS.search(fields[4])]
             check(mine and mine[0] == ['A', 'V'] and mine[-1][0] == 'V', 'ALR: %s' % self.alerts)
         if 'ALF' in self.counts:
             titles = [fields for fields in self.alerts if fields[1] == '1' and fields[9] == '4']
-            texts = [fields for fields in self.alerts if fields[1] == '2' and 'closest approach 2.5 m' in fields[-1]]
+            texts = [fields for fields in self.alerts if fields[1] == '2' and TELLS.search(fields[-1])]
             check(titles and len(titles) == len(texts) and {len(fields) for fields in self.alerts} == {13}, 'ALF: %s' % self.alerts)
             check(titles[0][5:7] == ['W', 'V'] and titles[-1][6] == 'N', 'ALF: %s' % titles)
 
