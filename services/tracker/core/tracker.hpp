@@ -28,6 +28,8 @@ struct TrackerParams {
   double end_probability = 0.01;
 };
 
+inline constexpr std::int64_t kNoTrack = -1;  // of a piece
+
 // Numbers of both are those of the wire.
 enum class TrackStatus : std::int32_t { kTentative = 1, kConfirmed = 2, kCoasting = 3, kLost = 4 };
 enum class TrackKind : std::int32_t { kObstacle = 0, kBuoy = 1, kBoat = 2, kStructure = 3, kUnknown = 4 };
@@ -68,6 +70,9 @@ struct Picture {
   bool is_sight_known = false;
   std::vector<Track> tracks;  // by id
   std::vector<std::int32_t> land_segment_ids;
+  /// What each piece of the scan is of, by its number less one: the id of a track, 0 land, kNoTrack nothing that is followed. Of a Sweep without
+  /// pieces by the id of its segment less one.
+  std::vector<std::int64_t> track_of_piece;
   std::vector<Eigen::Vector2d> waterline_m;   // every tenth scan, else empty
   std::optional<LandApproach> land_approach;  // nullopt: the own boat hardly moves, its pose is not known, or no land is near its way
   /// Tracks that became part of another in this scan (from, to).
