@@ -74,6 +74,8 @@ std::optional<std::string> Difference(const Scan& scan, const Segments& one, con
   }
   std::map<int, int> forth;
   std::map<int, int> back;
+  std::map<int, int> pieces_forth;
+  std::map<int, int> pieces_back;
   const auto per_column = CellsPerColumn(scan);
   for (std::size_t cell = 0; cell < scan.num_cells(); ++cell) {
     const auto column = static_cast<int>(cell / per_column);
@@ -81,6 +83,12 @@ std::optional<std::string> Difference(const Scan& scan, const Segments& one, con
     const int is = other.label[cell];
     if (forth.try_emplace(was, is).first->second != is || back.try_emplace(is, was).first->second != was || ((was <= 0 || is <= 0) && was != is)) {
       return "label " + std::to_string(was) + " and " + std::to_string(is) + " in cell " + std::to_string(cell);
+    }
+    const int piece_was = one.piece[static_cast<std::size_t>(from(column)) * per_column + cell % per_column];
+    const int piece_is = other.piece[cell];
+    if (pieces_forth.try_emplace(piece_was, piece_is).first->second != piece_is ||
+        pieces_back.try_emplace(piece_is, piece_was).first->second != piece_was) {
+      return "piece " + std::to_string(piece_was) + " and " + std::to_string(piece_is) + " in cell " + std::to_string(cell);
     }
   }
   for (const auto& segment : one.segments) {
@@ -280,7 +288,13 @@ TEST(LookoutLaw, GarbageHasLabelsAndFiniteSegmentsToo) {
     const auto scan = Garbage(random);
     const auto& segments = segmenter.Segment(scan);
     ASSERT_EQ(segments.label.size(), scan.num_cells());
-    for (std::size_t cell = 0; cell < scan.num_cells(); ++cell) ASSERT_EQ(segments.label[cell] == 0, scan.columns.range[cell] == 0);
+    std::map<int, int> segment_of_piece;
+    for (std::size_t cell = 0; cell < scan.num_cells(); ++cell) {
+      ASSERT_EQ(segments.label[cell] == 0, scan.columns.range[cell] == 0);
+      ASSERT_EQ(segments.piece[cell] > 0, segments.label[cell] > 0);
+      if (segments.label[cell] <= 0) continue;
+      ASSERT_EQ(segment_of_piece.try_emplace(segments.piece[cell], segments.label[cell]).first->second, segments.label[cell]);
+    }
     for (const auto& segment : segments.segments) {
       ASSERT_GE(segment.num_points, 1);
       ASSERT_EQ(segment.confidence == Confidence::kSure, segment.grounds == 0);
