@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -30,6 +32,7 @@
 #include "services/navigator/params.hpp"
 #include "services/vlp16/params.hpp"
 #include "tools/log/log_output.hpp"
+#include "tools/log/other_type.hpp"
 #include "tools/log/pose_counts.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/replay/chain.hpp"
@@ -157,12 +160,15 @@ void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) 
   }
 }
 
-// What PrintLacks tells of.
+// What is told at the end.
 struct Watched {
   lookout::log::PoseCounts poses;
+  std::map<std::string, std::int64_t, std::less<>> num_of_other_type;  // by channel, of those that are read and not computed
   std::int64_t num_sentences = 0;
 
   void Add(std::string_view channel, lookout::Bytes bytes) {
+    const auto* const known = lookout::bus::FindChannel(channel);
+    if (known != nullptr && lookout::log::IsOfOtherType(*known, bytes)) ++num_of_other_type[std::string(channel)];
     if (channel == lookout::bus::kPose.name) {
       if (const auto pose = lookout::bus::Decode<lookout::pose_t>(bytes)) poses.Add(*pose);
     } else if (channel == lookout::bus::kNavRaw.name) {
@@ -247,6 +253,10 @@ void Replay(const Options& options) {
   }
   if (lidar != nullptr && lidar->num_measured() > 0 && num_scans == 0) {
     throw std::runtime_error("no scan came out of the lidar's packets, see the counts above. " + lidar->Report().reason);
+  }
+  for (const auto& [channel, count] : watched.num_of_other_type) {
+    const auto& known = *lookout::bus::FindChannel(channel);
+    spdlog::warn("{}{}", lookout::log::OtherTypeText(known, count), lookout::log::IsMadeAnew(known) ? ", without --from and --only" : "");
   }
   for (const auto& line : lookout::replay::Lacks(SeenIn(options, inspection, chain, watched))) spdlog::warn("{}", line);
   std::FILE* const out = output.IsStandardOutput() ? stderr : stdout;  // a log that goes there is not mixed with lines
