@@ -148,7 +148,7 @@ class Replay : public ::testing::Test {
     std::map<int, int> histogram;
     std::string line;
     std::getline(in, line);
-    EXPECT_EQ(line, "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id");
+    EXPECT_EQ(line, "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id,piece");
     while (std::getline(in, line)) {
       std::istringstream row(line);
       std::string field;
@@ -322,6 +322,33 @@ TEST_F(Replay, SaysWhatItsResultLacksAndWhy) {
             std::string::npos)
       << result.output;
   EXPECT_NE(result.output.find("as a lidar sends them); set data_port to 2368"), std::string::npos) << result.output;
+}
+
+// A log of a version whose SEGMENTS had another type: they are computed anew, and who asks for those of the log is told.
+TEST_F(Replay, MakesMessagesOfAnotherVersionAnew) {
+  MakeDay();
+  std::size_t num_segments = 0;
+  {
+    bus::LogReader reader(Path("day"));
+    support::FileLog writer(Path("older"));
+    while (auto event = reader.Next()) {
+      if (event->channel == "SEGMENTS") {
+        event->bytes[7] ^= 1;  // its fingerprint
+        ++num_segments;
+      }
+      writer.Write(event->time, event->channel, event->bytes);
+    }
+  }
+  const std::string said = " messages of SEGMENTS are of another type than this version's SEGMENTS";
+  const auto anew = ReplayTo(Path("older"), "anew");
+  EXPECT_EQ(anew.exit_code, 0) << anew.output;
+  EXPECT_EQ(anew.output.find(said), std::string::npos) << anew.output;
+  EXPECT_TRUE(PayloadsByChannel("anew") == PayloadsByChannel("day"));
+  const auto as_it_is = ReplayTo(Path("older"), "as_it_is", {"--from", "SEGMENTS"});
+  EXPECT_EQ(as_it_is.exit_code, 0) << as_it_is.output;
+  EXPECT_NE(as_it_is.output.find(std::to_string(num_segments) + said + ": lookout-replay makes SEGMENTS anew of the log, without --from and --only"),
+            std::string::npos)
+      << as_it_is.output;
 }
 
 TEST_F(Replay, RefusesAnOutputThatExistsUnlessItIsForced) {

@@ -64,6 +64,28 @@ TEST_F(TrackerService, SendsTracksAndAlertsOfEachScan) {
   EXPECT_EQ(last.tracks[0].segment_ids, (std::vector<std::int32_t>{1}));
 }
 
+// Cell k is of segment k and piece k + 10: the last is 29. A scan without SEGMENTS has no pieces.
+TEST_F(TrackerService, SaysWhatEachPieceIsOf) {
+  SendPoses(0, 1'000'000);
+  for (int i = 0; i < 6; ++i) {
+    Send(bus::kLidarScan, test::MakeScan(test::kScanUs * i, i));
+    auto segments = test::MakeSegments(test::kScanUs * i, i);
+    for (const auto label : segments.label) {
+      if (label > 0) segments.piece.push_back(static_cast<std::int16_t>(label + 10));
+    }
+    segments.num_labelled = messages::CountOf(segments.piece);
+    if (i != 4) Send(bus::kSegments, segments);
+    Send(bus::kObstacles, Obstacles(i, i));
+  }
+  ASSERT_EQ(tracks_.size(), 6U);
+  for (const std::size_t i : {3U, 5U}) {
+    EXPECT_EQ(tracks_[i].first_piece, 1);
+    EXPECT_GE(tracks_[i].num_pieces, 11);
+    EXPECT_LE(tracks_[i].num_pieces, 29);
+  }
+  EXPECT_EQ(tracks_[4].num_pieces, 0);
+}
+
 TEST_F(TrackerService, ReportsEachCounterOnceAndHowMuchItFollows) {
   SendPoses(0, 1'000'000);
   for (int i = 0; i < 8; ++i) SendScan(i, i);
