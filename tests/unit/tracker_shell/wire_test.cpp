@@ -178,6 +178,7 @@ TEST(TracksMessage, CarriesWhatEachPieceIsOfInSlices) {
   Picture picture;
   picture.tracks.resize(2);
   for (auto& track : picture.tracks) track.outline_m = {{0.0, 0.0}};
+  picture.track_of_piece.reserve(32'767);
   for (std::int64_t piece = 1; piece <= 32'767; ++piece) picture.track_of_piece.push_back(piece % 3 == 0 ? kNoTrack : piece % 3 == 1 ? 0 : -piece);
   const auto parts = ToMessages(label, picture, bus::kMaxMessageBytes);
   ASSERT_EQ(parts.size(), 3U);
