@@ -50,30 +50,40 @@ void AddValue(Mean& sum, const Mean& of_scene) {
 }
 
 NamedTable Identities(const std::vector<TrackRow>& rows) {
-  Table table({"scene", "tracker", "runs", "minutes", "MOTA_%", "IDF1_%", "missed_%", "false_%", "switches_20s", "no_switch_%", "false_tracks_min",
-               "doubles_min", "GOSPA_m", "localisation_m", "missed_m", "false_m"});
+  Table table({"scene", "tracker", "runs", "minutes", "MOTA_%", "IDF1_%", "HOTA_%", "DetA_%", "AssA_%", "missed_%", "false_%", "switches_20s",
+               "no_switch_%", "false_tracks_h", "doubles_%", "ids_per_track"});
   for (const auto& [scene, row] : rows) {
     const auto& scores = row.scores;
-    const auto& gospa = scores.gospa;
     table.Add({scene, row.tracker, Number(scores.num_runs), Number(scores.seconds / 60.0, 2), Number(Percent(scores.Mota()), 1),
-               Number(Percent(scores.Idf1()), 1), Number(Percent(ShareOf(scores.num_missed, scores.num_expected)), 1),
+               Number(Percent(scores.Idf1()), 1), Number(Percent(scores.hota.Value()), 1), Number(Percent(scores.hota.Detection()), 1),
+               Number(Percent(scores.hota.Association()), 1), Number(Percent(ShareOf(scores.num_missed, scores.num_expected)), 1),
                Number(Percent(ShareOf(scores.num_false, scores.num_expected)), 1),
                Number(static_cast<double>(scores.num_switches) * kSecondsOfSwitches / scores.seconds, 2),
-               Number(Percent(ShareOf(scores.num_runs_without_switch, scores.num_runs)), 0), Number(scores.FalseTracksPerMinute(), 1),
-               Number(static_cast<double>(scores.num_double_tracks) * 60.0 / scores.seconds, 1), Number(gospa.Rms(), 2),
-               Number(gospa.LocalisationRms(), 2), Number(gospa.MissedRms(), 2), Number(gospa.FalseRms(), 2)});
+               Number(Percent(ShareOf(scores.num_runs_without_switch, scores.num_runs)), 0), Number(scores.FalseTracksPerHour(), 0),
+               Number(Percent(scores.has_double.value()), 2), Number(scores.IdsPerTrack(), 2)});
   }
   return {"tracks_identities", "tracks: who is who (things in the water with 5 returns or more)", std::move(table)};
 }
 
+NamedTable Distances(const std::vector<TrackRow>& rows) {
+  Table table({"scene", "tracker", "GOSPA_m", "localisation_m", "missed_m", "false_m", "T-GOSPA_m", "switching_m"});
+  for (const auto& [scene, row] : rows) {
+    const auto& gospa = row.scores.gospa;
+    const auto& trajectories = row.scores.trajectory_gospa;
+    table.Add({scene, row.tracker, Number(gospa.Rms(), 2), Number(gospa.LocalisationRms(), 2), Number(gospa.MissedRms(), 2),
+               Number(gospa.FalseRms(), 2), Number(trajectories.Rms(), 2), Number(trajectories.SwitchRms(), 2)});
+  }
+  return {"tracks_gospa", "tracks: distance to the truth (the same things)", std::move(table)};
+}
+
 NamedTable Times(const std::vector<TrackRow>& rows) {
   Table table({"scene", "tracker", "things_5+", "confirmed_median_s", "confirmed_95_s", "things_1-4", "confirmed_median_s", "confirmed_95_s",
-               "hidden", "found_again_%"});
+               "buoys_near", "in_2s_%", "hidden", "found_again_%"});
   for (const auto& [scene, row] : rows) {
     const auto& [many, few] = row.scores.confirmed_s;
     table.Add({scene, row.tracker, Count(many.count()), Percentile(many, 50, 2), Percentile(many, 95, 2), Count(few.count()), Percentile(few, 50, 2),
-               Percentile(few, 95, 2), Number(row.scores.num_hidden),
-               Number(Percent(ShareOf(row.scores.num_found_again, row.scores.num_hidden)), 0)});
+               Percentile(few, 95, 2), Number(row.scores.near_buoy_tracked.count), Number(Percent(row.scores.near_buoy_tracked.value()), 0),
+               Number(row.scores.num_hidden), Number(Percent(ShareOf(row.scores.num_found_again, row.scores.num_hidden)), 0)});
   }
   return {"tracks_times", "tracks: from the first return to the first track, and found again after 1 to 10 s", std::move(table)};
 }
@@ -152,7 +162,7 @@ std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::stri
 }
 
 std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows) {
-  return {Identities(rows), Times(rows), States(rows), Approaches(rows), Labels(rows)};
+  return {Identities(rows), Distances(rows), Times(rows), States(rows), Approaches(rows), Labels(rows)};
 }
 
 void PrintTables(const std::vector<NamedTable>& tables, std::ostream& out) {

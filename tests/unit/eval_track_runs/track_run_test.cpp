@@ -161,7 +161,7 @@ TEST(TrackTables, RowsOfOneSceneAddUpAndAllStandLast) {
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all[0].row.scores.num_runs, 3);
   const auto tables = TablesOf(rows);
-  ASSERT_EQ(tables.size(), 5U);
+  ASSERT_EQ(tables.size(), 6U);
   EXPECT_EQ(tables[0].table.rows().size(), 3U);
   EXPECT_TRUE(tables.back().table.empty());  // no scan had labels
 }
@@ -193,13 +193,33 @@ TEST(TargetTable, SaysOfEachTargetWhetherItIsReachedAndWhereLeast) {
                           RowWith("lake", "b", 500, 0.0, true)},
                          "all"};
   const auto table = TargetTable({world}, "a", "b").table;
-  EXPECT_EQ(CellsOf(table, "MOTA, %"), (Table::Row{">= 97.0", "98.0", "yes", "97.0 marina", "50.0"}));
-  EXPECT_EQ(CellsOf(table, "MOTA in waves and rain, %"), (Table::Row{">= 95.0", "94.0", "MISSED", "94.0 waves", "-"}));
-  EXPECT_EQ(CellsOf(table, "false tracks a minute, clear"), (Table::Row{"<= 0.10", "0.00", "yes", "0.00 lake", "0.00"}));
+  EXPECT_EQ(CellsOf(table, "MOTA, %"), (Table::Row{">= 98.0", "98.0", "yes", "97.0 marina", "50.0"}));
+  EXPECT_EQ(CellsOf(table, "MOTA in waves and rain, %"), (Table::Row{">= 96.0", "94.0", "MISSED", "94.0 waves", "-"}));
+  EXPECT_EQ(CellsOf(table, "false tracks an hour, clear"), (Table::Row{"<= 6", "0", "yes", "0 lake", "0"}));
   // Of scenes with structures the least gain, above 0; of all at least -0.3.
   EXPECT_EQ(CellsOf(table, "the same, all scenes"), (Table::Row{">= -0.3", "-0.2", "yes", "-0.2 marina", "0.0"}));
   EXPECT_EQ(CellsOf(table, "mIoU of labels over that of SEGMENTS, docks, piers or land, least")[2], "yes");
   EXPECT_TRUE(CellsOf(table, "CPA 10 s before, mean, m").empty());  // no scene shows it
+}
+
+TEST(TargetTable, OfABandTheFarthestSceneIsByRatio) {
+  const auto with_nees = [](const std::string& scene, double nees) {
+    auto row = RowWith(scene, "a", 0, 0.0, true);
+    row.row.scores.position_nees.Add(nees);
+    return row;
+  };
+  const auto table = TargetTable({{"w", {with_nees("lake", 0.25), with_nees("marina", 2.75)}, "all"}}, "a", "b").table;
+  EXPECT_EQ(CellsOf(table, "ANEES of position"), (Table::Row{"0.70 to 1.40", "1.50", "MISSED", "0.25 lake", "-"}));
+}
+
+TEST(TargetTable, BlackBuoysAreThoseOfTheirScene) {
+  const auto with_buoys = [](const std::string& scene, double share) {
+    auto row = RowWith(scene, "a", 0, 0.0, true);
+    row.row.scores.near_buoy_tracked.Add({100, 100.0 * share});
+    return row;
+  };
+  const auto table = TargetTable({{"w", {with_buoys("black_buoys", 0.91), with_buoys("lake", 0.2)}, "all"}}, "a", "b").table;
+  EXPECT_EQ(CellsOf(table, "black buoys tracked within 2 s of coming within 25 m, %"), (Table::Row{">= 90", "91", "yes", "91 black_buoys", "-"}));
 }
 
 }  // namespace
