@@ -40,6 +40,10 @@ std::uint64_t Distance(std::int64_t from, std::int64_t to) { return static_cast<
 // Microseconds from one time of measurement to another; may be negative.
 double GapUs(const StreamPlace& from, const StreamPlace& to) { return static_cast<double>(to.utime_us) - static_cast<double>(from.utime_us); }
 
+double InUs(std::chrono::nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
+
+}  // namespace
+
 bool IsOfType(const Channel& channel, std::uint64_t fingerprint) {
   static const auto kFingerprints = [] {
     std::map<std::string_view, std::uint64_t> fingerprints;
@@ -52,10 +56,6 @@ bool IsOfType(const Channel& channel, std::uint64_t fingerprint) {
   const auto found = kFingerprints.find(channel.name);
   return found != kFingerprints.end() && found->second == fingerprint;
 }
-
-double InUs(std::chrono::nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
-
-}  // namespace
 
 std::uint64_t DigestOf(Bytes bytes) {
   constexpr std::uint64_t kFactor = 0x9E3779B97F4A7C15;

@@ -21,6 +21,9 @@ struct StreamPlace {
   std::uint64_t digest = 0;  // of all its bytes
 };
 
+/// Whether a fingerprint is that of the channel's type.
+bool IsOfType(const Channel& channel, std::uint64_t fingerprint);
+
 /// Not cryptographic. The same on every computer.
 std::uint64_t DigestOf(Bytes bytes);
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
+#include <utility>
 
 #include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
@@ -52,6 +54,14 @@ bool HasCells(const Message& message) {
   const std::int64_t cells_per_column = std::int64_t{message.num_rings} * message.num_returns;
   if (cells_per_column == 0 || message.num_columns == 0) return message.num_cells == 0;
   return message.num_cells % cells_per_column == 0 && message.num_cells / cells_per_column == message.num_columns;
+}
+
+// As many as cells with a label above 0, or none.
+bool HasPieces(const segments_t& message) {
+  if (!std::cmp_equal(message.num_labelled, message.piece.size())) return false;
+  if (message.num_labelled == 0) return true;
+  return message.num_labelled == std::ranges::count_if(message.label, [](std::int16_t label) { return label > 0; }) &&
+         std::ranges::all_of(message.piece, [](std::int16_t piece) { return piece > 0; });
 }
 
 bool IsWithin(float value, float least, float greatest) { return value >= least && value <= greatest; }  // false for NaN
@@ -217,13 +227,20 @@ bool IsGood(const map_land_t& land) {
          (land.cell.empty() || (land.cell.front() >= 0 && land.cell.back() < 1024));
 }
 
+// Of pieces, numbered from 1 by 16 bits.
+bool HasSlice(const tracks_t& message) {
+  if (!std::cmp_equal(message.num_pieces, message.track_of_piece.size())) return false;
+  if (message.num_pieces == 0) return true;
+  return message.first_piece >= 1 && std::int64_t{message.first_piece} + message.num_pieces - 1 <= std::numeric_limits<std::int16_t>::max();
+}
+
 bool IsSameNumber(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
 
 }  // namespace
 
 bool IsWellFormed(const lidar_scan_t& message) { return HasPlace(message) && HasCells(message); }
 
-bool IsWellFormed(const segments_t& message) { return HasPlace(message) && HasCells(message); }
+bool IsWellFormed(const segments_t& message) { return HasPlace(message) && HasCells(message) && HasPieces(message); }
 
 bool IsWellFormed(const obstacles_t& message) {
   return HasPlace(message) && std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) {
@@ -231,7 +248,7 @@ bool IsWellFormed(const obstacles_t& message) {
          });
 }
 
-bool IsWellFormed(const tracks_t& message) { return HasPlace(message); }
+bool IsWellFormed(const tracks_t& message) { return HasPlace(message) && HasSlice(message); }
 
 bool IsWellFormed(const map_t& message) {
   return HasPlace(message) && UtimeFromWire(message.end_utime_us) && UtimeFromWire(message.begin_utime_us) &&

@@ -1,5 +1,6 @@
 #include "services/segmenter/service.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "services/segmenter/wire.hpp"
@@ -26,12 +27,15 @@ void Service::OnScan(const lidar_scan_t& message) {
     return;
   }
   const auto& segments = segmenter_.Segment(*scan);
-  for (const auto& answer : ToMessages(*scan, segments, bus::kMaxMessageBytes)) bus::Publish(bus_, bus::kSegments, answer);
+  const auto answers = ToMessages(*scan, segments, bus::kMaxMessageBytes);
+  for (const auto& answer : answers) bus::Publish(bus_, bus::kSegments, answer);
+  const bool has_pieces = std::ranges::any_of(answers, [](const segments_t& part) { return part.num_labelled > 0; });
 
   ++counts_["scans"];
   counts_["segments"] += static_cast<std::int64_t>(segments.segments.size());
   counts_["segments_too_small"] += segments.num_too_small;
   counts_["segments_over_limit"] += segments.num_over_limit;
+  if (!has_pieces && !segments.segments.empty()) ++counts_["scans_without_pieces"];
   counts_["returns_repeated"] += segments.num_repeats;
 }
 

@@ -41,8 +41,8 @@ class Service {
   PassedTime time_{std::chrono::seconds(2)};
   InputWatch scans_watch_{bus::kLidarScan.name};
   static constexpr auto kCountNames =
-      std::to_array<std::string_view>({"scans", "segments", "segments_too_small", "segments_over_limit", "returns_repeated", "scans_incomplete",
-                                       "scans_inconsistent", "parts_duplicate", "parts_inconsistent"});
+      std::to_array<std::string_view>({"scans", "segments", "segments_too_small", "segments_over_limit", "returns_repeated", "scans_without_pieces",
+                                       "scans_incomplete", "scans_inconsistent", "parts_duplicate", "parts_inconsistent"});
   Counts<kCountNames> counts_;
 };
 

@@ -1,5 +1,6 @@
 #include "services/segmenter/wire.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <utility>
@@ -131,6 +132,7 @@ std::vector<segments_t> ToMessages(const Scan& scan, const Segments& segments, i
     part.num_segments = messages::CountOf(part.segments);
   };
 
+  int max_part_bytes = 0;
   const auto cells_per_column = static_cast<std::ptrdiff_t>(scan.head.num_rings()) * scan.head.num_returns;
   for (const auto& span : scan.parts) {
     segments_t& part = parts.emplace_back(PartOf(scan, segments, static_cast<int>(parts.size())));
@@ -139,6 +141,17 @@ std::vector<segments_t> ToMessages(const Scan& scan, const Segments& segments, i
     const auto begin = segments.label.begin() + span.first_column * cells_per_column;
     part.label.assign(begin, begin + span.num_columns * cells_per_column);
     part.num_cells = messages::CountOf(part.label);
+    const auto piece = segments.piece.begin() + span.first_column * cells_per_column;
+    part.piece.assign(piece, piece + span.num_columns * cells_per_column);
+    std::erase(part.piece, std::int16_t{0});
+    part.num_labelled = messages::CountOf(part.piece);
+    max_part_bytes = std::max(max_part_bytes, part.getEncodedSize());
+  }
+  for (auto& part : parts) {
+    if (max_part_bytes > max_message_bytes) {
+      part.piece.clear();
+      part.num_labelled = 0;
+    }
     fill(part);
   }
   while (segment != segments.segments.end()) {

@@ -100,7 +100,7 @@ void Service::AddLabels(std::span<const segments_t> parts, bool is_whole) {
   if (!labels) {
     labels.emplace();
     labels->key = KeyOf(parts.front());
-    labels->is_whole = false;
+    labels->is_whole = is_whole;  // without labels they do not fit, and are counted so
   }
   Use(gatherer_.Add(std::move(*labels)));
 }

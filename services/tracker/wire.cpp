@@ -11,6 +11,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
+#include "common/messages/pieces.hpp"
 #include "services/tracker/alert_text.hpp"
 
 namespace lookout::tracker {
@@ -34,6 +35,7 @@ static_assert(static_cast<int>(Encounter::kCrossingGiveWay) == track_t::ENCOUNTE
 static_assert(static_cast<int>(Encounter::kCrossingStandOn) == track_t::ENCOUNTER_CROSSING_STAND_ON);
 static_assert(static_cast<int>(Encounter::kOvertaking) == track_t::ENCOUNTER_OVERTAKING);
 static_assert(static_cast<int>(Encounter::kOvertaken) == track_t::ENCOUNTER_OVERTAKEN);
+static_assert(kNoTrack == tracks_t::PIECE_NO_TRACK);
 static_assert(static_cast<int>(AlertCause::kGuardZone) == alert_t::CAUSE_GUARD_ZONE);
 static_assert(static_cast<int>(AlertCause::kClosestApproach) == alert_t::CAUSE_CLOSEST_APPROACH);
 static_assert(static_cast<int>(AlertCause::kWatch) == alert_t::CAUSE_WATCH);
@@ -170,6 +172,22 @@ track_t ToMessage(const Track& track, const LocalFrame& map, double own_up_m) {
   return message;
 }
 
+bool IsLabelled(const segments_t& part) {
+  return std::ranges::any_of(part.label, [](std::int16_t label) { return label > 0; });
+}
+
+// Whether each piece has one label.
+bool AreOfOneSegmentEach(const ScanLabels& scan) {
+  std::vector<std::int16_t> segment_of_piece(std::size_t{std::numeric_limits<std::int16_t>::max()} + 1, 0);
+  for (std::size_t cell = 0; cell < scan.piece.size(); ++cell) {
+    if (scan.piece[cell] == 0) continue;
+    auto& segment = segment_of_piece[static_cast<std::size_t>(scan.piece[cell])];
+    if (segment != 0 && segment != scan.label[cell]) return false;
+    segment = scan.label[cell];
+  }
+  return true;
+}
+
 template <typename Message>
 void CopyLabel(const ScanLabel& scan, Message& message) {
   message.utime_us = ToUtimeUs(scan.key.time);
@@ -260,12 +278,22 @@ std::optional<ScanLabels> ToLabels(std::span<const segments_t> parts) {
   scan.key = KeyOf(head);
   scan.num_returns = head.num_returns;
   const auto cells_per_column = std::int64_t{head.num_rings} * head.num_returns;
+  bool has_pieces = false;
   for (const auto& part : parts) {
     if (part.num_columns == 0) continue;  // segments that did not fit in the parts before
     if (!std::cmp_equal(cells_per_column * part.first_column, scan.label.size())) return std::nullopt;
     if (!std::cmp_equal(cells_per_column * part.num_columns, part.label.size())) return std::nullopt;
     scan.label.insert(scan.label.end(), part.label.begin(), part.label.end());
+    has_pieces |= !part.piece.empty();
   }
+  if (!has_pieces) return scan;
+  scan.piece.reserve(scan.label.size());
+  for (const auto& part : parts) {
+    if (part.piece.empty() && IsLabelled(part)) return std::nullopt;
+    const auto piece = messages::PiecesOf(part);
+    scan.piece.insert(scan.piece.end(), piece.begin(), piece.end());
+  }
+  if (!AreOfOneSegmentEach(scan)) return std::nullopt;
   return scan;
 }
 
@@ -313,6 +341,19 @@ std::vector<tracks_t> ToMessages(const ScanLabel& scan, const Picture& picture, 
       num_bytes += size;
       parts.back().tracks.push_back(std::move(message));
     }
+  }
+  for (std::span<const std::int64_t> rest = picture.track_of_piece; !rest.empty();) {
+    const auto room = static_cast<std::size_t>(std::max(0, max_message_bytes - num_bytes)) / sizeof(std::int64_t);
+    const auto slice = rest.first(std::min(room, rest.size()));
+    if (!slice.empty()) {
+      parts.back().first_piece = static_cast<std::int32_t>(picture.track_of_piece.size() - rest.size()) + 1;
+      parts.back().num_pieces = static_cast<std::int32_t>(slice.size());
+      parts.back().track_of_piece.assign(slice.begin(), slice.end());
+    }
+    rest = rest.subspan(slice.size());
+    if (rest.empty()) break;
+    parts.push_back(head);
+    num_bytes = head_bytes;
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
     parts[i].part_index = static_cast<std::int32_t>(i);

@@ -30,7 +30,8 @@ struct LeftOut {
 inline constexpr int kMostObstacles = 4000;
 
 /// Of one scan, from parts that FaultOf accepts; by part_index, one at least.
-/// @return nullopt where the parts contradict each other: ids that do not increase, columns that do not fit
+/// @return nullopt where the parts contradict each other: ids that do not increase, columns that do not fit, pieces in some parts only or of two
+///         segments
 std::optional<ScanObstacles> ToObstacles(std::span<const obstacles_t> parts, LeftOut& left_out);
 std::optional<ScanBeams> ToBeams(std::span<const lidar_scan_t> parts);
 std::optional<ScanLabels> ToLabels(std::span<const segments_t> parts);

@@ -2,10 +2,13 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -25,6 +28,7 @@
 #include "tools/export/boat_of_log.hpp"
 #include "tools/export/scans.hpp"
 #include "tools/export/selection.hpp"
+#include "tools/log/other_type.hpp"
 #include "tools/log/pose_counts.hpp"
 
 namespace lookout::eval {
@@ -74,6 +78,7 @@ int EvaluateLog(const LogOptions& options) {
   bus::LogReader reader(options.log_file);
   std::optional<config::BoatFacts> boat;
   std::int64_t num_unusable = 0;
+  std::map<std::string, std::int64_t, std::less<>> num_of_other_type;  // by channel
   runtime::Progress progress("lookout-eval", runtime::OnlyTerminal(stderr));
   bool holds_events = false;
   while (const auto event = reader.Next()) {
@@ -103,7 +108,9 @@ int EvaluateLog(const LogOptions& options) {
     }
     // What it cannot decode of the channels above is counted there.
     if (tracks && !tracks->Add(channel, event->bytes) && channel == kTracksChannel) is_taken = false;
-    if (!is_taken) ++num_unusable;
+    if (is_taken) continue;
+    const auto* known = bus::FindChannel(channel);
+    ++(known != nullptr && log::IsOfOtherType(*known, event->bytes) ? num_of_other_type[channel] : num_unusable);
   }
   collector.Finish();
   progress.Clear();
@@ -131,6 +138,7 @@ int EvaluateLog(const LogOptions& options) {
     if (tracks->has_own_tracks()) PrintTables(TablesOf(rows), std::cout);
   }
   PrintMachine(std::cout, machine);
+  for (const auto& [channel, num] : num_of_other_type) std::cout << log::OtherTypeText(*bus::FindChannel(channel), num) << '\n';
   if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";
   if (num_incomplete > 0) std::cout << num_incomplete << " scans lack a part of OBSTACLES\n";
   if (reader.num_damaged() > 0) std::cout << reader.num_damaged() << " stretches of the log are damaged\n";

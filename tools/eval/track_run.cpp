@@ -6,6 +6,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/messages/pieces.hpp"
 #include "tools/eval/outcome.hpp"
 
 namespace lookout::eval {
@@ -52,13 +53,30 @@ std::map<int, int> LabelsOf(const std::vector<TrackState>& tracks, const std::se
   return labels;
 }
 
-std::function<int(int)> Lookup(const std::map<int, int>& labels) {
-  int last = kFirstLabel;
-  for (const auto& [segment, label] : labels) last = std::max(last, label);
-  return [&labels, last](int segment) {
-    const auto label = labels.find(segment);
-    return label == labels.end() ? last + segment : label->second;
-  };
+// Labels by what TRACKS say of pieces, from 1 on; 0 = the return keeps the label of its segment.
+struct PieceLabels {
+  std::vector<int> of_piece;  // by its number
+  int last = kLandLabel;
+};
+
+// Empty where TRACKS say nothing of pieces.
+PieceLabels PieceLabelsOf(const std::vector<tracks_t>& parts) {
+  PieceLabels labels;
+  std::map<std::int64_t, int> label_of_track;
+  for (const auto& part : parts) {
+    if (part.num_pieces == 0) continue;
+    const auto first = static_cast<std::size_t>(part.first_piece);
+    labels.of_piece.resize(std::max(labels.of_piece.size(), first + part.track_of_piece.size()), 0);
+    for (std::size_t i = 0; i < part.track_of_piece.size(); ++i) {
+      const auto track_id = part.track_of_piece[i];
+      if (track_id < tracks_t::PIECE_LAND) continue;
+      const auto next = kFirstLabel + static_cast<int>(label_of_track.size());
+      const int label = track_id == tracks_t::PIECE_LAND ? kLandLabel : label_of_track.try_emplace(track_id, next).first->second;
+      labels.of_piece[first + i] = label;
+      labels.last = std::max(labels.last, label);
+    }
+  }
+  return labels;
 }
 
 void AddTo(Mean& mean, const std::optional<double>& value) {
@@ -66,6 +84,16 @@ void AddTo(Mean& mean, const std::optional<double>& value) {
 }
 
 }  // namespace
+
+// @param labels  outlives what is returned
+std::function<int(const TrackRun::LabelledReturn&)> TrackRun::BySegment(const std::map<int, int>& labels) {
+  int last = kFirstLabel;
+  for (const auto& [segment, label] : labels) last = std::max(last, label);
+  return [&labels, last](const LabelledReturn& one) {
+    const auto label = labels.find(one.label);
+    return label == labels.end() ? last + one.label : label->second;
+  };
+}
 
 TrackState ToTrackState(const track_t& track) {
   TrackState state;
@@ -129,6 +157,7 @@ std::vector<TrackRun::LabelledReturn> TrackRun::Join(const messages::ScanMessage
   for (const auto& [part_index, part] : scan.scans) {
     const auto found = scan.segments.find(part_index);
     const bool is_labelled = found != scan.segments.end() && found->second.num_cells == part.num_cells;
+    const auto piece = is_labelled ? messages::PiecesOf(found->second) : std::vector<std::int16_t>(part.range.size(), 0);
     std::size_t cell = 0;
     for (std::size_t column = 0; column < static_cast<std::size_t>(part.num_columns); ++column) {
       for (std::size_t ring = 0; ring < static_cast<std::size_t>(part.num_rings); ++ring) {
@@ -139,7 +168,9 @@ std::vector<TrackRun::LabelledReturn> TrackRun::Join(const messages::ScanMessage
           const auto* truth = truth_.Find(part.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k);
           if (truth == nullptr) continue;
           ++num_joined_;
-          if (truth->object_id != importer::kOwnVesselObject) returns.push_back({truth->object_id, is_labelled ? found->second.label[cell] : 0});
+          if (truth->object_id != importer::kOwnVesselObject) {
+            returns.push_back({truth->object_id, is_labelled ? found->second.label[cell] : 0, piece[cell]});
+          }
         }
       }
     }
@@ -148,7 +179,8 @@ std::vector<TrackRun::LabelledReturn> TrackRun::Join(const messages::ScanMessage
   return returns;
 }
 
-std::optional<double> TrackRun::IouOf(const std::vector<LabelledReturn>& returns, bool is_land_one, const std::function<int(int)>& label_of) const {
+std::optional<double> TrackRun::IouOf(const std::vector<LabelledReturn>& returns, bool is_land_one,
+                                      const std::function<int(const LabelledReturn&)>& label_of) const {
   // Objects of Confusion are above 0.
   const int land_id = objects_.rbegin()->first + 1;
   Confusion confusion;
@@ -156,7 +188,7 @@ std::optional<double> TrackRun::IouOf(const std::vector<LabelledReturn>& returns
   for (const auto& [id, object] : objects_) object_of[id] = is_land_one && id > 0 && IsLand(object) ? land_id : id;
   for (const auto& one : returns) {
     const auto object = object_of.find(one.object);
-    confusion.Add(object == object_of.end() ? 0 : object->second, one.label > 0 ? label_of(one.label) : 0);
+    confusion.Add(object == object_of.end() ? 0 : object->second, one.label > 0 ? label_of(one) : 0);
   }
   Mean iou;
   for (const auto& [id, object] : confusion.Match().objects) iou.Add(object.iou);
@@ -181,16 +213,16 @@ void TrackRun::OnScan(const messages::ScanMessages& scan) {
 
   const auto land = LandOf(scan);
   if (!scan.segments.empty()) {
-    AddTo(waiting.own_labels.segments, IouOf(waiting.returns, false, [](int segment) { return segment; }));
+    AddTo(waiting.own_labels.segments, IouOf(waiting.returns, false, [](const LabelledReturn& one) { return one.label; }));
     AddTo(waiting.own_labels.segments_land_one,
-          IouOf(waiting.returns, true, [&](int segment) { return land.contains(segment) ? kLandLabel : kFirstLabel + segment; }));
+          IouOf(waiting.returns, true, [&](const LabelledReturn& one) { return land.contains(one.label) ? kLandLabel : kFirstLabel + one.label; }));
   }
   for (std::size_t i = 0; i < said_.size(); ++i) {
     auto& said = said_[i];
     said.labels.segments.Add(waiting.own_labels.segments);
     said.labels.segments_land_one.Add(waiting.own_labels.segments_land_one);
     const auto labels = LabelsOf(tracks[i], land);
-    if (!scan.segments.empty()) AddTo(said.labels.tracks_land_one, IouOf(waiting.returns, true, Lookup(labels)));
+    if (!scan.segments.empty()) AddTo(said.labels.tracks_land_one, IouOf(waiting.returns, true, BySegment(labels)));
     said.tracks.push_back(std::move(tracks[i]));
   }
   own_.tracks.emplace_back();
@@ -203,6 +235,7 @@ void TrackRun::OnScan(const messages::ScanMessages& scan) {
 }
 
 bool TrackRun::OnTracks(const tracks_t& message) {
+  if (!messages::IsWellFormed(message)) return false;
   has_own_ = true;
   const auto found = waiting_.find(message.utime_us);
   if (found == waiting_.end()) return true;  // of a scan that is not scored
@@ -232,8 +265,18 @@ void TrackRun::TakeTracks(const Waiting& waiting) {
     land.insert(part.land_segment_ids.begin(), part.land_segment_ids.end());
   }
   if (waiting.own_labels.segments.count == 0) return;
+  const auto pieces = PieceLabelsOf(waiting.parts);
+  if (!pieces.of_piece.empty()) {
+    const auto by_piece = [&pieces](const LabelledReturn& one) {
+      const auto piece = static_cast<std::size_t>(one.piece);
+      const int label = piece < pieces.of_piece.size() ? pieces.of_piece[piece] : 0;
+      return label > 0 ? label : pieces.last + one.label;
+    };
+    AddTo(own_.labels.tracks_land_one, IouOf(waiting.returns, true, by_piece));
+    return;
+  }
   const auto labels = LabelsOf(tracks, land);
-  AddTo(own_.labels.tracks_land_one, IouOf(waiting.returns, true, Lookup(labels)));
+  AddTo(own_.labels.tracks_land_one, IouOf(waiting.returns, true, BySegment(labels)));
 }
 
 std::vector<TrackRun::Row> TrackRun::Rows() const {

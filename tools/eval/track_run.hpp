@@ -33,8 +33,8 @@ struct LabelScores {
   bool has_structures = false;  // docks, piers, land
   Mean segments;                // labels of SEGMENTS against the objects of the truth
   Mean segments_land_one;       // land is one object, and segments that SEGMENTS call land have one label
-  Mean tracks_land_one;         // the same with the id of the track that explains a segment as its label, and of land what the tracker calls so; a
-                                // segment that no track explains keeps its own label
+  Mean tracks_land_one;         // the same with the track of a piece as its label (of a tracker that says nothing of pieces: the track that explains
+                                // its segment), and of land what the tracker calls so; what no track explains keeps the label of its segment
 };
 
 class TrackRun {
@@ -68,6 +68,7 @@ class TrackRun {
   struct LabelledReturn {
     int object;  // 0 = of none
     int label;   // of SEGMENTS
+    int piece;
   };
   struct Said {  // by one tracker
     std::string tracker;
@@ -89,7 +90,9 @@ class TrackRun {
   void TakeTracks(const Waiting& waiting);
   std::vector<LabelledReturn> Join(const messages::ScanMessages& scan);
   // Mean over the objects; nullopt without one.
-  std::optional<double> IouOf(const std::vector<LabelledReturn>& returns, bool is_land_one, const std::function<int(int)>& label_of) const;
+  std::optional<double> IouOf(const std::vector<LabelledReturn>& returns, bool is_land_one,
+                              const std::function<int(const LabelledReturn&)>& label_of) const;
+  static std::function<int(const LabelledReturn&)> BySegment(const std::map<int, int>& labels);
 
   Truth& truth_;
   Returns used_returns_;

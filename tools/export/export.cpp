@@ -28,6 +28,7 @@
 #include "tools/export/map_table.hpp"
 #include "tools/export/sinks.hpp"
 #include "tools/log/log_span.hpp"
+#include "tools/log/other_type.hpp"
 #include "tools/log/pose_counts.hpp"
 
 namespace lookout::exporter {
@@ -40,6 +41,7 @@ constexpr std::string_view kProgram = "lookout-export: ";
 struct Tally {
   bus::Channel channel;
   std::int64_t num_taken = 0;
+  std::int64_t num_of_other_type = 0;
   std::int64_t num_undecodable = 0;
   std::int64_t num_inconsistent = 0;
 };
@@ -162,6 +164,7 @@ Span SpanOf(const Request& request, const std::string& channel) {
 
 void Tell(std::ostream& errors, const Sink& sink, const std::vector<Tally>& tallies) {
   for (const auto& tally : tallies) {
+    if (tally.num_of_other_type > 0) errors << kProgram << log::OtherTypeText(tally.channel, tally.num_of_other_type) << '\n';
     if (tally.num_undecodable > 0) errors << kProgram << tally.num_undecodable << " messages of " << tally.channel.name << " could not be decoded\n";
     if (tally.num_inconsistent > 0)
       errors << kProgram << tally.num_inconsistent << " messages of " << tally.channel.name << " contradict themselves\n";
@@ -245,7 +248,7 @@ int Export(const Request& request, std::ostream& errors) {
       const bool is_first = taken == Taken::kOk && tally == tallies.begin() && tally->num_taken == 0;
       if (is_first && request.format == "csv") text.insert(0, std::string(TableHeader(request.table)) + '\n');
       tally->num_taken += taken == Taken::kOk ? 1 : 0;
-      tally->num_undecodable += taken == Taken::kUndecodable ? 1 : 0;
+      if (taken == Taken::kUndecodable) ++(log::IsOfOtherType(tally->channel, event->bytes) ? tally->num_of_other_type : tally->num_undecodable);
       tally->num_inconsistent += taken == Taken::kInconsistent ? 1 : 0;
       if (text.size() >= kBlockBytes) {
         output.Write(text);
@@ -266,7 +269,8 @@ int Export(const Request& request, std::ostream& errors) {
   if (!why.empty() && !sink->IsDone()) errors << kProgram << why << '\n';
   if (tallies.front().num_taken == 0) {
     const auto when = TextOf(span);
-    throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name) + (when.empty() ? "" : " " + when));
+    const auto of_this = tallies.front().num_of_other_type > 0 ? " of this version's type" : "";
+    throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name) + of_this + (when.empty() ? "" : " " + when));
   }
   if (request.format != "csv" && text.empty()) {  // the end of what was written before is not empty
     if (IsOneOf(request.table, {"pose", "tracks"}) && !request.scan) throw std::runtime_error("no pose knows its position");

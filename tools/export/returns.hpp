@@ -9,6 +9,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/frames.hpp"
+#include "common/messages/pieces.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "tools/export/words.hpp"
@@ -25,6 +26,7 @@ struct Return {
   int reflectivity;  // device units
   bool has_label;    // else the log holds no SEGMENTS of this part
   int label;         // 1.. = id of its segment, 0 = in none
+  int piece;         // 1.. = number of its piece, 0 = in no segment
   std::string_view reason;
 };
 
@@ -36,6 +38,7 @@ template <typename Use>
 void ForEachReturn(const lidar_scan_t& scan, const segments_t* labels, Use use) {
   const auto num_rings = static_cast<std::size_t>(scan.num_rings);
   const auto num_returns = static_cast<std::size_t>(scan.num_returns);
+  const auto piece = labels != nullptr ? messages::PiecesOf(*labels) : std::vector<std::int16_t>();
   std::size_t cell = 0;
   for (std::size_t column = 0; column < static_cast<std::size_t>(scan.num_columns); ++column) {
     for (std::size_t ring = 0; ring < num_rings; ++ring) {
@@ -58,6 +61,7 @@ void ForEachReturn(const lidar_scan_t& scan, const segments_t* labels, Use use) 
         if (result.has_label) {
           const int label = labels->label[cell];
           result.label = label > 0 ? label : 0;
+          result.piece = piece[cell];
           if (label < 0) result.reason = words::WordOf(words::kReason, -label);
         }
         use(result);

@@ -40,34 +40,46 @@ Fixed GeodeticDegrees(double angle_deg) { return {angle_deg, 9}; }  // 0.1 mm on
 Fixed Degrees(double angle_rad) { return {RadToDeg(angle_rad), 4}; }
 Fixed Share(double share) { return {share, 4}; }  // or a probability
 
-// By segment, of one scan: its track, or 0 where it is land by what is remembered.
-std::map<std::int32_t, std::int64_t> TracksOfSegments(const ScanMessages& scan) {
-  std::map<std::int32_t, std::int64_t> tracks;
+// Of one scan, by number of the piece, else by id of the segment: the track, or 0 where it is land by what is remembered.
+struct TracksOfScan {
+  std::map<std::int32_t, std::int64_t> of_piece;  // as TRACKS say; empty: they say nothing of pieces
+  std::map<std::int32_t, std::int64_t> of_segment;
+
+  std::optional<std::int64_t> Of(const Return& one) const {
+    const auto& tracks = of_piece.empty() ? of_segment : of_piece;
+    const auto found = tracks.find(of_piece.empty() ? one.label : one.piece);
+    return found == tracks.end() || found->second == tracks_t::PIECE_NO_TRACK ? std::nullopt : std::optional(found->second);
+  }
+};
+
+TracksOfScan TracksOf(const ScanMessages& scan) {
+  TracksOfScan tracks;
   for (const auto& [part_index, part] : scan.tracks) {
     for (const auto& track : part.tracks) {
-      for (const auto segment_id : track.segment_ids) tracks[segment_id] = track.id;
+      for (const auto segment_id : track.segment_ids) tracks.of_segment[segment_id] = track.id;
     }
-    for (const auto segment_id : part.land_segment_ids) tracks[segment_id] = 0;
+    for (const auto segment_id : part.land_segment_ids) tracks.of_segment[segment_id] = 0;
+    for (std::int32_t i = 0; i < part.num_pieces; ++i) tracks.of_piece[part.first_piece + i] = part.track_of_piece[static_cast<std::size_t>(i)];
   }
   return tracks;
 }
 
 void AppendReturns(const ScanMessages& scan, std::string& text) {
-  const auto tracks = TracksOfSegments(scan);
+  const auto tracks = TracksOf(scan);
   for (const auto& [part_index, part] : scan.scans) {
     ForEachReturn(part, LabelsOf(scan, part), [&, &columns = part](const Return& one) {
-      const auto append = [&](const auto& label, const auto& reason, const auto& track_id) {
+      const auto append = [&](const auto& label, const auto& reason, const auto& track_id, const auto& piece) {
         // The wire counts ranges in 2 mm.
         AppendRow(text, columns.utime_us, one.utime_us, one.ring, one.return_index, Direction{one.azimuth_rad}, Fixed{one.range_m, 3},
-                  Metres(one.p_lidar_m.x()), Metres(one.p_lidar_m.y()), Metres(one.p_lidar_m.z()), one.reflectivity, label, reason, track_id);
+                  Metres(one.p_lidar_m.x()), Metres(one.p_lidar_m.y()), Metres(one.p_lidar_m.z()), one.reflectivity, label, reason, track_id, piece);
       };
-      const auto track = one.has_label && one.label > 0 ? tracks.find(one.label) : tracks.end();
-      if (track != tracks.end()) {
-        append(one.label, one.reason, track->second);
+      const auto track_id = one.has_label && one.label > 0 ? tracks.Of(one) : std::nullopt;
+      if (track_id) {
+        append(one.label, one.reason, *track_id, one.piece);
       } else if (one.has_label) {
-        append(one.label, one.reason, Empty{});
+        append(one.label, one.reason, Empty{}, one.piece);
       } else {
-        append(Empty{}, Empty{}, Empty{});
+        append(Empty{}, Empty{}, Empty{}, Empty{});
       }
     });
   }
@@ -212,8 +224,8 @@ struct Table {
 };
 
 const std::array kTables{
-    Table{"returns", "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id", bus::kLidarScan,
-          nullptr},
+    Table{"returns", "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id,piece",
+          bus::kLidarScan, nullptr},
     Table{"segments",
           "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share,"
           "thing_probability,land_probability",

@@ -36,6 +36,7 @@
 #include "services/vlp16/core/packet_format.hpp"
 #include "services/vlp16/core/position_packet.hpp"
 #include "services/vlp16/wire.hpp"
+#include "tools/log/other_type.hpp"
 
 namespace lookout::log {
 
@@ -164,6 +165,14 @@ void Payloads::Print(std::ostream& out) const {
     out << fmt::format("{:<9} {} {}: {}; the first is event {}, {}\n", "", found.count, place.first, place.second, found.first_event,
                        TimeText(found.first_time));
   }
+  std::string made_anew;
+  for (const auto& [place, found] : found_) {
+    const auto* channel = bus::FindChannel(place.first);
+    if (place.second != kOtherType || channel == nullptr || !IsMadeAnew(*channel)) continue;
+    made_anew += (made_anew.empty() ? "" : ", ") + std::string(place.first);
+  }
+  if (!made_anew.empty())
+    out << fmt::format("{:<9} of another version of Lookout, or damaged: lookout-replay makes {} anew of the log\n", "", made_anew);
 }
 
 }  // namespace lookout::log

@@ -9,6 +9,8 @@ namespace lookout::segmenter {
 namespace {
 
 constexpr std::int32_t kMaxSegments = std::numeric_limits<std::int16_t>::max();
+constexpr std::int32_t kMaxPieces = std::numeric_limits<std::int16_t>::max();
+static_assert(TightPieces::kMostPieces <= kMaxPieces);
 
 // In the simulator's heavy rain, 1 of 4000 segments of drops has so many returns.
 constexpr float kEnoughReturns = 4.0F;
@@ -101,6 +103,7 @@ const Segments& Segmenter::Segment(const Scan& scan) {
   measurer_.Measure(scan, classified.returns, numbering_.groups(), result_.segments);
   if (params_.method == Method::kLookout) DescribeSegments(scan);
   LabelReturns();
+  NumberPieces();
   result_.num_repeats = static_cast<std::int64_t>(classified.repeats.size());
   result_.num_too_small = numbering_.num_too_small();
   result_.num_over_limit = numbering_.num_over_limit();
@@ -149,6 +152,24 @@ void Segmenter::LabelReturns() {
   }
   for (const auto& repeat : classified.repeats) {
     label[static_cast<std::size_t>(repeat.cell)] = label[static_cast<std::size_t>(returns[static_cast<std::size_t>(repeat.of_return)].cell)];
+  }
+}
+
+void Segmenter::NumberPieces() {
+  const auto& classified = classifier_.result();
+  const auto& returns = classified.returns;
+  const auto& label = result_.label;
+  auto& piece = result_.piece;
+  const bool is_paper = params_.method == Method::kPaper;
+  const auto& piece_of_return = is_paper ? components_.of_return : method_.tight_pieces().of_return();
+  const bool is_numbered = !is_paper || components_.count <= kMaxPieces;
+  piece.assign(label.size(), 0);
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    const auto cell = static_cast<std::size_t>(returns[i].cell);
+    if (label[cell] > 0) piece[cell] = is_numbered ? static_cast<std::int16_t>(piece_of_return[i] + 1) : label[cell];
+  }
+  for (const auto& repeat : classified.repeats) {
+    piece[static_cast<std::size_t>(repeat.cell)] = piece[static_cast<std::size_t>(returns[static_cast<std::size_t>(repeat.of_return)].cell)];
   }
 }
 

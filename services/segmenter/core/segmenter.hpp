@@ -32,6 +32,9 @@ struct Params {
 
 struct Segments {
   std::vector<std::int16_t> label;  // [cells] id of the segment; 0 = no return; minus the reason where a return is in none
+  // [cells] where a label is above 0 the piece, from 1, that its segment is made of; else 0. Each piece is of one segment; numbers may have gaps.
+  // Of the lookout method its tight pieces, of the paper's its components (where labels of 16 bits number no more: the segment's id).
+  std::vector<std::int16_t> piece;
   std::vector<Segment> segments;    // by id
   std::int32_t num_too_small = 0;   // left out for having too few returns
   std::int32_t num_over_limit = 0;  // left out, the smallest, because labels of 16 bits number no more
@@ -51,6 +54,7 @@ class Segmenter {
  private:
   void GroupAsThePaper(const Scan& scan);
   void LabelReturns();
+  void NumberPieces();
   void DescribeSegments(const Scan& scan);
 
   Params params_;

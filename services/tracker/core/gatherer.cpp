@@ -228,11 +228,18 @@ std::optional<Sweep> Gatherer::SweepOf(const ScanKey& key) {
   Sweep& sweep = beams->sweep;
   if (labels) {
     const auto num_returns = static_cast<std::size_t>(beams->num_returns);
-    if (labels->num_returns != beams->num_returns || labels->label.size() != num_returns * sweep.range_m.size()) {
+    const bool is_fitting = labels->num_returns == beams->num_returns && labels->label.size() == num_returns * sweep.range_m.size() &&
+                            (labels->piece.empty() || labels->piece.size() == labels->label.size());
+    if (!is_fitting) {
       ++counts_["labels_inconsistent"];
     } else {
-      sweep.label.resize(sweep.range_m.size());
-      for (std::size_t i = 0; i < sweep.label.size(); ++i) sweep.label[i] = labels->label[i * num_returns + beams->nearest[i]];
+      const auto of_nearest = [&](const std::vector<std::int16_t>& of_cells) {
+        std::vector<std::int16_t> of_shots(sweep.range_m.size());
+        for (std::size_t i = 0; i < of_shots.size(); ++i) of_shots[i] = of_cells[i * num_returns + beams->nearest[i]];
+        return of_shots;
+      };
+      sweep.label = of_nearest(labels->label);
+      if (!labels->piece.empty()) sweep.piece = of_nearest(labels->piece);
     }
   }
   return std::move(sweep);

@@ -59,12 +59,13 @@ struct ScanBeams {
   std::vector<std::uint8_t> nearest;  // [columns x rings] which return of the shot range_m is
 };
 
-/// SEGMENTS of one scan: the labels.
+/// SEGMENTS of one scan: labels and pieces.
 struct ScanLabels {
   ScanKey key;
   bool is_whole = true;
   int num_returns = 1;
   std::vector<std::int16_t> label;  // [columns x rings x returns]
+  std::vector<std::int16_t> piece;  // the same; empty: each segment is one piece
 };
 
 /// A scan with all that came of it.

@@ -173,7 +173,7 @@ TEST_F(Compare, OfTwoTypesNamesBoth) {
   ASSERT_TRUE(difference);
   EXPECT_EQ(difference->field, "type");
   EXPECT_EQ(difference->a, "pose_t (0xca8b57b621cb2643)");
-  EXPECT_EQ(difference->b, "segments_t (0xc6d7cf487f1c76a2)");
+  EXPECT_EQ(difference->b, "segments_t (0xd04dd7c76291c9dc)");
 }
 
 TEST_F(Compare, WhatIsNoMessageIsComparedByteByByte) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <map>
 #include <optional>
 
 #include "common/bus/channels.hpp"
@@ -115,6 +116,57 @@ TEST(TrackRun, TracksOfTheBusAreScoredBesideTheOthers) {
   // Every segment is a track: the labels are the same but for their names.
   EXPECT_DOUBLE_EQ(row->labels.tracks_land_one.value(), row->labels.segments_land_one.value());
   ASSERT_TRUE(crossing.RowOf("nearest neighbour"));
+}
+
+// TRACKS without tracks that say of each piece of SEGMENTS, in two slices, what `say` says of its segment.
+TrackRun::Row RowOfPieces(const std::function<std::int64_t(std::int16_t segment)>& say) {
+  std::map<std::int64_t, std::vector<std::int64_t>> said;  // by utime_us
+  const Crossing crossing([&](TrackRun& run, std::string_view channel, Bytes bytes) {
+    if (channel == bus::kSegments.name) {
+      const auto segments = bus::Decode<segments_t>(bytes);
+      auto& of_piece = said[segments->utime_us];
+      std::size_t next = 0;
+      for (const auto label : segments->label) {
+        if (label <= 0) continue;
+        const auto piece = static_cast<std::size_t>(segments->piece[next++]);
+        if (of_piece.size() < piece) of_piece.resize(piece, tracks_t::PIECE_NO_TRACK);
+        of_piece[piece - 1] = say(label);
+      }
+    }
+    if (channel != bus::kObstacles.name) return;
+    tracks_t message{};
+    message.utime_us = bus::Decode<obstacles_t>(bytes)->utime_us;
+    const auto of_piece = said[message.utime_us];
+    const auto middle = of_piece.begin() + static_cast<std::ptrdiff_t>(of_piece.size() / 2);
+    message.num_parts = 2;
+    message.first_piece = 1;
+    message.track_of_piece.assign(of_piece.begin(), middle);
+    message.num_pieces = static_cast<std::int32_t>(message.track_of_piece.size());
+    const auto second_piece = message.num_pieces + 1;
+    ASSERT_TRUE(run.Add(kTracksChannel, bus::Encode(message)));
+    message.part_index = 1;
+    message.first_piece = second_piece;
+    message.track_of_piece.assign(middle, of_piece.end());
+    message.num_pieces = static_cast<std::int32_t>(message.track_of_piece.size());
+    ASSERT_TRUE(run.Add(kTracksChannel, bus::Encode(message)));
+  });
+  const auto row = crossing.RowOf("lookout");
+  EXPECT_TRUE(row);
+  return row.value_or(TrackRun::Row{});
+}
+
+TEST(TrackRun, ReturnsAreLabelledByTheTrackOfTheirPiece) {
+  const auto by_tracks = RowOfPieces([](std::int16_t segment) { return 1000 + segment; });
+  const double of_segments = by_tracks.labels.segments_land_one.value();
+  EXPECT_DOUBLE_EQ(by_tracks.labels.tracks_land_one.value(), of_segments);
+  // What is of no track, or of one that TRACKS do not have, keeps the label of its segment.
+  for (const std::int64_t none : {tracks_t::PIECE_NO_TRACK, std::int64_t{-40}}) {
+    EXPECT_DOUBLE_EQ(RowOfPieces([none](std::int16_t) { return none; }).labels.tracks_land_one.value(), of_segments);
+  }
+  const auto as_one = RowOfPieces([](std::int16_t) { return std::int64_t{7}; });
+  EXPECT_LT(as_one.labels.tracks_land_one.value(), of_segments - 0.1);
+  const auto as_land = RowOfPieces([](std::int16_t) { return tracks_t::PIECE_LAND; });
+  EXPECT_DOUBLE_EQ(as_land.labels.tracks_land_one.value(), as_one.labels.tracks_land_one.value());
 }
 
 TEST(TrackRun, WhatCannotBeDecodedIsRefused) {

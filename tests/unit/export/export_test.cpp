@@ -83,6 +83,21 @@ TEST_F(ExportTest, CountsMessagesThatItCannotTakeAndGoesOn) {
   EXPECT_NE(errors_.find("1 messages of SEGMENTS could not be decoded"), std::string::npos) << errors_;
 }
 
+// SEGMENTS of a version before, whose type had another fingerprint: that is no damage, and a replay makes them anew.
+TEST_F(ExportTest, SaysWhatToDoAboutTypesOfAnotherVersion) {
+  auto bytes = bus::Encode(MakeSegments(MakeScan(0)));
+  bytes[7] ^= 1;
+  Add(bus::kLidarScan, MakeScan(0));
+  for (int i = 0; i < 2; ++i) AddBytes("SEGMENTS", bytes);
+  const std::string said =
+      "lookout-export: 2 messages of SEGMENTS are of another type than this version's SEGMENTS: lookout-replay makes SEGMENTS anew of the log\n";
+  EXPECT_EQ(Export("returns"), kExitFine);
+  EXPECT_EQ(errors_, said);
+  EXPECT_EQ(Export("segments"), kExitFailed);
+  EXPECT_TRUE(errors_.starts_with(said)) << errors_;
+  EXPECT_TRUE(errors_.ends_with("lookout-export: the input holds no SEGMENTS of this version's type\n")) << errors_;
+}
+
 TEST_F(ExportTest, WritesTheHeaderOnceAlsoWhenTheFirstMessagesAreBad) {
   AddBytes("POSE", {});
   AddBytes("POSE", {0});
@@ -109,7 +124,7 @@ TEST_F(ExportTest, ReadsSeveralLogsAsOneAlsoAcrossTheLabelsOfAScan) {
   Add(bus::kSegments, MakeSegments(MakeScan(0, 1), 5));
   EXPECT_EQ(Export(Request{.inputs = {first, log_}, .table = "returns", .output = folder_ / "out"}), kExitFine);
   ASSERT_EQ(Rows().size(), 2U);
-  EXPECT_TRUE(Rows()[0].ends_with(",5,,"));
+  EXPECT_TRUE(Rows()[0].ends_with(",5,,,5"));
 }
 
 TEST_F(ExportTest, EndsWithoutAFileWhenItIsStopped) {

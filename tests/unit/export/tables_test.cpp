@@ -17,7 +17,8 @@ namespace {
 using TablesTest = ExportTest;
 
 TEST(TableHeader, IsTheContractWithScriptsOutside) {
-  EXPECT_EQ(TableHeader("returns"), "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id");
+  EXPECT_EQ(TableHeader("returns"),
+            "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id,piece");
   EXPECT_EQ(TableHeader("segments"),
             "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share,"
             "thing_probability,land_probability");
@@ -41,11 +42,11 @@ TEST_F(TablesTest, ReturnsComeByColumnThenRingWithTheTimeOfTheirLaser) {
   Add(bus::kSegments, segments);
   ASSERT_EQ(Export("returns"), kExitFine) << errors_;
   EXPECT_EQ(text_,
-            "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id\n"
-            "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,3,,\n"
-            "1700000000000000,1700000000000002,1,0,0.0000,10.000,10.0000,0.0000,0.0000,7,0,own_vessel,\n"
-            "1700000000000000,1700000000000055,0,0,90.0000,10.000,0.0000,-9.6593,-2.5882,7,0,too_small,\n"
-            "1700000000000000,1700000000000058,1,0,90.0000,10.000,0.0000,-10.0000,0.0000,7,1,,\n");
+            "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id,piece\n"
+            "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,3,,,3\n"
+            "1700000000000000,1700000000000002,1,0,0.0000,10.000,10.0000,0.0000,0.0000,7,0,own_vessel,,0\n"
+            "1700000000000000,1700000000000055,0,0,90.0000,10.000,0.0000,-9.6593,-2.5882,7,0,too_small,,0\n"
+            "1700000000000000,1700000000000058,1,0,90.0000,10.000,0.0000,-10.0000,0.0000,7,1,,,1\n");
   EXPECT_EQ(errors_, "");
 }
 
@@ -73,11 +74,64 @@ TEST_F(TablesTest, ReturnsNameTheTrackOfTheirSegment) {
   ASSERT_EQ(Export("returns"), kExitFine) << errors_;
   ASSERT_EQ(Rows().size(), 8U);
   for (const std::size_t first : {0U, 4U}) {
-    EXPECT_TRUE(Rows()[first].ends_with(",7,1,,")) << Rows()[first];
-    EXPECT_TRUE(Rows()[first + 1].ends_with(",7,2,,17")) << Rows()[first + 1];
-    EXPECT_TRUE(Rows()[first + 2].ends_with(",7,3,,0")) << Rows()[first + 2];
-    EXPECT_TRUE(Rows()[first + 3].ends_with(",7,0,,")) << Rows()[first + 3];
+    EXPECT_TRUE(Rows()[first].ends_with(",7,1,,,1")) << Rows()[first];
+    EXPECT_TRUE(Rows()[first + 1].ends_with(",7,2,,17,2")) << Rows()[first + 1];
+    EXPECT_TRUE(Rows()[first + 2].ends_with(",7,3,,0,3")) << Rows()[first + 2];
+    EXPECT_TRUE(Rows()[first + 3].ends_with(",7,0,,,0")) << Rows()[first + 3];
   }
+}
+
+// Segment 1 is of three pieces: land, track 17 and one that nothing follows; segment 2 is of one, which has a number that TRACKS do not have.
+TEST_F(TablesTest, ReturnsNameTheTrackOfTheirPiece) {
+  const auto scan = MakeScan(0);
+  auto segments = MakeSegments(scan);
+  segments.label = {1, 1, 1, 2};
+  segments.piece = {3, 1, 6, 2};
+  segments.num_labelled = 4;
+  Add(bus::kLidarScan, scan);
+  Add(bus::kSegments, segments);
+  tracks_t tracks{};
+  tracks.utime_us = scan.utime_us;
+  tracks.num_parts = 2;
+  tracks.num_tracks = 1;
+  tracks.tracks.resize(1);
+  tracks.tracks[0].id = 17;
+  tracks.tracks[0].num_segments = 2;
+  tracks.tracks[0].segment_ids = {1, 2};
+  tracks.first_piece = 1;
+  tracks.track_of_piece = {17, -40};
+  tracks.num_pieces = 2;
+  Add(bus::kTracks, tracks);
+  tracks.part_index = 1;
+  tracks.num_tracks = 0;
+  tracks.tracks.clear();
+  tracks.first_piece = 3;
+  tracks.track_of_piece = {0, 5, tracks_t::PIECE_NO_TRACK};
+  tracks.num_pieces = 3;
+  Add(bus::kTracks, tracks);
+  ASSERT_EQ(Export("returns"), kExitFine) << errors_;
+  ASSERT_EQ(Rows().size(), 4U);
+  EXPECT_TRUE(Rows()[0].ends_with(",7,1,,0,3")) << Rows()[0];
+  EXPECT_TRUE(Rows()[1].ends_with(",7,1,,17,1")) << Rows()[1];
+  EXPECT_TRUE(Rows()[2].ends_with(",7,1,,,6")) << "beyond the last slice: " << Rows()[2];
+  EXPECT_TRUE(Rows()[3].ends_with(",7,2,,-40,2")) << Rows()[3];
+}
+
+// Nothing is followed: that is said of pieces too, and the ids of segments do not count.
+TEST_F(TablesTest, ReturnsOfPiecesThatNothingFollowsHaveNoTrack) {
+  const auto scan = MakeScan(0);
+  Add(bus::kLidarScan, scan);
+  Add(bus::kSegments, MakeSegments(scan));
+  tracks_t tracks{};
+  tracks.utime_us = scan.utime_us;
+  tracks.num_parts = 1;
+  tracks.num_land_segments = 1;
+  tracks.land_segment_ids = {1};
+  tracks.first_piece = tracks.num_pieces = 1;
+  tracks.track_of_piece = {tracks_t::PIECE_NO_TRACK};
+  Add(bus::kTracks, tracks);
+  ASSERT_EQ(Export("returns"), kExitFine) << errors_;
+  for (const auto& row : Rows()) EXPECT_TRUE(row.ends_with(",7,1,,,1")) << row;
 }
 
 TEST_F(TablesTest, TracksHaveARowForEachTrackAndScan) {
@@ -140,7 +194,7 @@ TEST_F(TablesTest, ReturnsOfALogWithoutSegmentsHaveNeitherLabelNorReason) {
   Add(bus::kLidarScan, MakeScan(0, 1));
   ASSERT_EQ(Export("returns"), kExitFine);
   ASSERT_EQ(Rows().size(), 2U);
-  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,,,");
+  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,,,,");
 }
 
 TEST_F(TablesTest, CellsWithoutReturnHaveNoRow) {
@@ -150,7 +204,7 @@ TEST_F(TablesTest, CellsWithoutReturnHaveNoRow) {
   Add(bus::kLidarScan, scan);
   ASSERT_EQ(Export("returns"), kExitFine);
   ASSERT_EQ(Rows().size(), 1U);
-  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000002,1,0,0.0000,0.002,0.0020,0.0000,0.0000,0,,,");
+  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000002,1,0,0.0000,0.002,0.0020,0.0000,0.0000,0,,,,");
 }
 
 TEST_F(TablesTest, RangeIsAnUnsignedCountPrintedToTheLastMillimetre) {
@@ -184,8 +238,8 @@ TEST_F(TablesTest, ReturnsKnowBothReturnsOfAFiringAzimuthOffsetsAndOrigins) {
   Add(bus::kLidarScan, scan);
   ASSERT_EQ(Export("returns"), kExitFine);
   ASSERT_EQ(Rows().size(), 2U);
-  EXPECT_EQ(Rows()[0], "1700000000000000,1699999999999997,1,0,270.0000,2.000,0.0000,2.0000,0.5000,1,,,");
-  EXPECT_EQ(Rows()[1], "1700000000000000,1699999999999997,1,1,270.0000,1.000,0.0000,1.0000,0.5000,255,,,");
+  EXPECT_EQ(Rows()[0], "1700000000000000,1699999999999997,1,0,270.0000,2.000,0.0000,2.0000,0.5000,1,,,,");
+  EXPECT_EQ(Rows()[1], "1700000000000000,1699999999999997,1,1,270.0000,1.000,0.0000,1.0000,0.5000,255,,,,");
 }
 
 TEST_F(TablesTest, ReturnsOfAPartAreLabelledByThatPart) {
@@ -199,8 +253,8 @@ TEST_F(TablesTest, ReturnsOfAPartAreLabelledByThatPart) {
   Add(bus::kSegments, MakeSegments(second, 2));
   ASSERT_EQ(Export("returns"), kExitFine);
   ASSERT_EQ(Rows().size(), 4U);
-  EXPECT_TRUE(Rows()[1].ends_with(",7,1,,"));
-  EXPECT_TRUE(Rows()[2].ends_with(",7,2,,"));
+  EXPECT_TRUE(Rows()[1].ends_with(",7,1,,,1"));
+  EXPECT_TRUE(Rows()[2].ends_with(",7,2,,,2"));
 }
 
 TEST_F(TablesTest, SegmentsHaveTheirNearestDistanceAndHeight) {

@@ -370,6 +370,7 @@ TEST_F(LogCommands, InfoTellsMessagesWhosePayloadIsNotWhole) {
   EXPECT_NE(text.find("          2 POSE: of another type than the channel's; the first is event 1, 2027-01-15T08:00:00.000000Z\n"), std::string::npos)
       << text;
   EXPECT_NE(text.find("          1 POSE: do not decode; the first is event 3"), std::string::npos) << text;
+  EXPECT_NE(text.find("          of another version of Lookout, or damaged: lookout-replay makes POSE anew of the log\n"), std::string::npos) << text;
   EXPECT_NE(text.find("          1 NAV_RAW: nav_raw_bad_kind; the first is event 4"), std::string::npos) << text;
   EXPECT_NE(text.find("          1 LIDAR_PACKETS: hold packets of the lidar that do not fill them"), std::string::npos) << text;
 }

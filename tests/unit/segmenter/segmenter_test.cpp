@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <map>
 #include <set>
 
 #include "tests/unit/segmenter/scan_maker.hpp"
@@ -116,6 +117,73 @@ TEST(SegmentScan, JoinsAnObjectAcrossTheSeam) {
   std::vector<test::Wall> walls;
   test::AddBoat(walls, 12.0, 0.0, 1.0, 4.0, 2.0, -1.0, 1.0);
   for (const auto& params : AllWays()) EXPECT_EQ(SegmentScan(See(walls), params).segments.size(), 1U);
+}
+
+// Each piece is of one segment, and has a number where a cell is in a segment, else 0.
+void ExpectGoodPieces(const Segments& segments) {
+  ASSERT_EQ(segments.piece.size(), segments.label.size());
+  std::map<int, int> segment_of;
+  for (std::size_t cell = 0; cell < segments.label.size(); ++cell) {
+    ASSERT_EQ(segments.piece[cell] > 0, segments.label[cell] > 0);
+    ASSERT_GE(segments.piece[cell], 0);
+    if (segments.piece[cell] == 0) continue;
+    ASSERT_EQ(segment_of.try_emplace(segments.piece[cell], segments.label[cell]).first->second, segments.label[cell]);
+  }
+}
+
+int NumPieces(const Segments& segments) {
+  std::set<int> pieces(segments.piece.begin(), segments.piece.end());
+  pieces.erase(0);
+  return static_cast<int>(pieces.size());
+}
+
+TEST(SegmentScan, NumbersThePiecesThatASegmentIsMadeOf) {
+  std::vector<test::Wall> walls;
+  test::AddBoat(walls, 12.0, 0.0, 1.0, 4.0, 2.0, -1.0, 1.0);
+  test::AddBoat(walls, -20.0, 5.0, 0.3, 6.0, 2.0, -1.0, 1.0);
+  auto scan = See(walls);
+  for (int column = 600; column < 640; ++column)
+    test::SetReturn(scan, column, 4, column < 620 ? 15.0 : 15.6);  // closer than 0.8 m, farther than a link
+  for (const auto& params : AllWays()) {
+    const auto segments = SegmentScan(scan, params);
+    ExpectGoodPieces(segments);
+    EXPECT_GE(NumPieces(segments), static_cast<int>(segments.segments.size()));
+  }
+  const auto ours = SegmentScan(scan, {});
+  EXPECT_NE(ours.piece[test::CellOf(scan, 600, 4)], ours.piece[test::CellOf(scan, 639, 4)]);
+  EXPECT_EQ(ours.piece[test::CellOf(scan, 600, 4)], ours.piece[test::CellOf(scan, 619, 4)]);
+  EXPECT_EQ(ours.label[test::CellOf(scan, 600, 4)], ours.label[test::CellOf(scan, 639, 4)]);
+}
+
+// The paper's components are its pieces: without clustering each segment is one.
+TEST(SegmentScan, HasThePapersComponentsAsPieces) {
+  auto scan = test::EmptyScan({});
+  for (const int column : {100, 101, 103, 500}) test::SetReturn(scan, column, 4, 10.0);
+  auto params = AsThePaper();
+  const auto clustered = SegmentScan(scan, params);
+  ExpectGoodPieces(clustered);
+  EXPECT_EQ(clustered.segments.size(), 2U);
+  EXPECT_EQ(NumPieces(clustered), 3);
+  EXPECT_EQ(clustered.label[test::CellOf(scan, 100, 4)], clustered.label[test::CellOf(scan, 103, 4)]);
+  EXPECT_NE(clustered.piece[test::CellOf(scan, 100, 4)], clustered.piece[test::CellOf(scan, 103, 4)]);
+  params.component_clustering = false;
+  const auto components = SegmentScan(scan, params);
+  EXPECT_EQ(components.piece, components.label);
+}
+
+// 16 bits number no more pieces than segments; alone in its column and two rings from the next, each return is a component.
+TEST(SegmentScan, HasNoPieceNumberBeyondSixteenBits) {
+  auto scan = test::EmptyScan({.num_columns = 8192});
+  for (int column = 0; column < 8192; ++column) {
+    for (int ring = column % 2; ring < 16; ring += 3) test::SetReturn(scan, column, ring, 5.0 + 7.0 * ((column + ring) % 12));
+  }
+  auto params = AsThePaper();
+  params.component_clustering = false;
+  const auto segments = SegmentScan(scan, params);
+  ExpectGoodPieces(segments);
+  EXPECT_GT(segments.num_over_limit, 0);
+  EXPECT_EQ(NumPieces(segments), 32'767);
+  ExpectGoodPieces(SegmentScan(scan, {}));
 }
 
 TEST(SegmentScan, LabelsBothReturnsOfAShot) {

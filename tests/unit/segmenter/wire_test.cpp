@@ -140,6 +140,7 @@ TEST(FaultOfScan, AcceptsTheBoundsThemselves) {
 Segments ManySegments(std::size_t num_cells, int num_segments, std::size_t num_corners, std::size_t num_waterline_corners = 0) {
   Segments segments;
   segments.label.assign(num_cells, 1);
+  segments.piece.assign(num_cells, 1);
   for (int id = 1; id <= num_segments; ++id) {
     Segment segment;
     segment.id = id;
@@ -159,6 +160,7 @@ void ExpectGoodParts(const std::vector<segments_t>& parts, int num_segments) {
     EXPECT_EQ(parts[i].num_turn_segments, num_segments);
     EXPECT_EQ(parts[i].num_cells, parts[i].num_columns * parts[i].num_rings * parts[i].num_returns);
     EXPECT_EQ(parts[i].label.size(), static_cast<std::size_t>(parts[i].num_cells));
+    EXPECT_TRUE(messages::IsWellFormed(parts[i]));
     for (const auto& segment : parts[i].segments) EXPECT_EQ(segment.id, next_id++);
   }
   EXPECT_EQ(next_id, num_segments + 1);
@@ -172,6 +174,9 @@ TEST(ToMessages, FollowsThePartsOfTheScan) {
   scan.parts = {{0, 1000}, {1000, 808}};
   auto segments = ManySegments(scan.num_cells(), 3, 4);
   segments.label[16000] = -4;
+  segments.piece[16000] = 0;
+  segments.piece[0] = 3;
+  segments.piece[16002] = 7;
   const auto parts = ToMessages(scan, segments, bus::kMaxMessageBytes);
   ASSERT_EQ(parts.size(), 2U);
   ExpectGoodParts(parts, 3);
@@ -183,6 +188,10 @@ TEST(ToMessages, FollowsThePartsOfTheScan) {
   EXPECT_EQ(parts[1].first_column, 1000);
   EXPECT_EQ(parts[1].num_columns, 808);
   EXPECT_EQ(parts[1].label[0], -4);
+  EXPECT_EQ(parts[0].num_labelled, 16000);
+  EXPECT_EQ(parts[0].piece[0], 3);
+  EXPECT_EQ(parts[1].num_labelled, 808 * 16 - 1);
+  EXPECT_EQ(parts[1].piece[1], 7) << "of the second cell that has a label above 0";
   EXPECT_EQ(parts[0].num_segments, 3);
   EXPECT_EQ(parts[1].num_segments, 0);
 }
@@ -217,6 +226,24 @@ TEST(ToMessages, CountsTheBytesOfWaterlines) {
   EXPECT_EQ(parts[0].num_segments, 19);
 }
 
+// Two parts, of which only the second has too many labels: 40 000 bytes of them, and as many of pieces.
+TEST(ToMessages, GoesWithoutPiecesWhereThoseOfOnePartDoNotFit) {
+  constexpr int kMaxBytes = 60'000;
+  auto scan = test::EmptyScan({});
+  scan.parts = {{0, 558}, {558, 1250}};
+  auto segments = ManySegments(scan.num_cells(), 3, 4);
+  const auto all_fit = ToMessages(scan, segments, bus::kMaxMessageBytes);
+  EXPECT_EQ(all_fit[0].num_labelled, all_fit[0].num_cells);
+  EXPECT_EQ(all_fit[1].num_labelled, all_fit[1].num_cells);
+  const auto parts = ToMessages(scan, segments, kMaxBytes);
+  ExpectGoodParts(parts, 3);
+  ASSERT_EQ(parts.size(), 2U);
+  for (const auto& part : parts) {
+    EXPECT_EQ(part.num_labelled, 0);
+    EXPECT_LE(part.getEncodedSize(), kMaxBytes);
+  }
+}
+
 TEST(ToMessages, OfAnEmptyTurnIsOnePart) {
   const auto parts = ToMessages(test::EmptyScan({.num_columns = 0}), {}, bus::kMaxMessageBytes);
   ASSERT_EQ(parts.size(), 1U);
@@ -226,7 +253,7 @@ TEST(ToMessages, OfAnEmptyTurnIsOnePart) {
 TEST(ToMessages, CarriesEveryFieldOfASegment) {
   const auto scan = test::EmptyScan({.num_columns = 1, .num_rings = 1});
   Segments segments;
-  segments.label = {1};
+  segments.label = segments.piece = {1};
   segments.segments.push_back({.time = test::kScanTime + std::chrono::microseconds(3),
                                .id = 1,
                                .confidence = Confidence::kTentative,

@@ -97,6 +97,30 @@ TEST_F(TrackerBadInput, LabelsThatDoNotFitTheBeamsAreCounted) {
   EXPECT_EQ(Count("labels_inconsistent"), 5);
 }
 
+// A piece of two segments; as many pieces as labels above 0 but one.
+TEST_F(TrackerBadInput, PiecesThatDoNotFitTheLabelsAreCounted) {
+  const auto send = [this](int i, std::int16_t second_piece, std::size_t num_pieces) {
+    SendPoses(i);
+    Send(bus::kLidarScan, test::MakeScan(test::kScanUs * i, i));
+    auto labels = test::MakeSegments(test::kScanUs * i, i);
+    labels.piece.assign(labels.label.begin() + 1, labels.label.end());
+    labels.piece[1] = second_piece;
+    labels.piece.resize(num_pieces);
+    labels.num_labelled = static_cast<std::int32_t>(num_pieces);
+    Send(bus::kSegments, labels);
+    Send(bus::kObstacles, Obstacles(i));
+  };
+  for (int i = 0; i < 3; ++i) send(i, 2, 19);
+  EXPECT_EQ(Count("labels_inconsistent"), 0);
+  for (int i = 3; i < 6; ++i) send(i, 1, 19);
+  for (int i = 6; i < 8; ++i) send(i, 2, 18);
+  send(8, 2, 19);
+  SendPoses(9);
+  EXPECT_EQ(tracks_.size(), 9U);
+  EXPECT_EQ(Count("labels_inconsistent"), 3);
+  EXPECT_EQ(Count("segments_refused_count"), 2);
+}
+
 TEST_F(TrackerBadInput, AJumpOfTenKilometresBeginsAnewAndMovesNoTrack) {
   constexpr double kJumpM = 10'000.0;
   for (int i = 0; i < 20; ++i) SendScan(i);

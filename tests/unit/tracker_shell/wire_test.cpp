@@ -96,6 +96,126 @@ TEST(ToLabels, SkipsPartsWithoutColumns) {
   EXPECT_FALSE(ToLabels(std::vector{labels}));
 }
 
+// Two returns a shot, in two parts of five columns.
+std::vector<segments_t> LabelsInTwoParts() {
+  auto whole = test::MakeSegments(0, 3);
+  std::vector<segments_t> parts(2, whole);
+  for (int i = 0; i < 2; ++i) {
+    auto& part = parts[static_cast<std::size_t>(i)];
+    part.num_parts = 2;
+    part.part_index = i;
+    part.num_columns = 5;
+    part.first_column = 5 * i;
+    part.num_cells = 10;
+    part.label.assign(10, 0);
+    part.label[2] = 4;
+    part.label[3] = -1;
+    part.label[9] = 5;
+    part.num_labelled = 2;
+    part.piece = {static_cast<std::int16_t>(3 + i), 7};
+  }
+  return parts;
+}
+
+TEST(ToLabels, PutsPiecesBesideTheirLabels) {
+  const auto parts = LabelsInTwoParts();
+  const auto labels = ToLabels(parts);
+  ASSERT_TRUE(labels);
+  std::vector<std::int16_t> expected(20, 0);
+  expected[2] = 3;
+  expected[12] = 4;
+  expected[9] = expected[19] = 7;
+  EXPECT_EQ(labels->piece, expected);
+  EXPECT_EQ(labels->label[12], 4);
+}
+
+TEST(ToLabels, HasNoPiecesWhereTheScanHasNone) {
+  auto parts = LabelsInTwoParts();
+  for (auto& part : parts) {
+    part.num_labelled = 0;
+    part.piece.clear();
+  }
+  ASSERT_TRUE(ToLabels(parts));
+  EXPECT_TRUE(ToLabels(parts)->piece.empty());
+}
+
+TEST(ToLabels, RefusesPiecesOfSomePartsAndOfTwoSegments) {
+  auto parts = LabelsInTwoParts();
+  parts[1].num_labelled = 0;
+  parts[1].piece.clear();
+  EXPECT_FALSE(ToLabels(parts));
+  parts[1].label.assign(10, -1);
+  EXPECT_TRUE(ToLabels(parts)) << "nothing in it has a piece";
+  parts = LabelsInTwoParts();
+  parts[1].piece[0] = 7;
+  EXPECT_FALSE(ToLabels(parts)) << "piece 7 is of segment 5 in the other part";
+}
+
+TEST(WellFormedSegments, HaveAPieceForEachLabelAboveZeroOrNone) {
+  const auto good = LabelsInTwoParts()[0];
+  EXPECT_TRUE(messages::IsWellFormed(good));
+  const auto is_good = [&good](std::vector<std::int16_t> piece) {
+    auto message = good;
+    message.piece = std::move(piece);
+    message.num_labelled = messages::CountOf(message.piece);
+    return messages::IsWellFormed(message);
+  };
+  EXPECT_TRUE(is_good({32'767, 1}));
+  EXPECT_TRUE(is_good({}));
+  EXPECT_FALSE(is_good({1}));
+  EXPECT_FALSE(is_good({1, 2, 3}));
+  EXPECT_FALSE(is_good({0, 2}));
+  EXPECT_FALSE(is_good({1, -2}));
+  auto miscounted = good;
+  miscounted.num_labelled = 0;
+  EXPECT_FALSE(messages::IsWellFormed(miscounted));
+}
+
+// All that 16 bits number: 262 136 bytes, in slices behind the tracks.
+TEST(TracksMessage, CarriesWhatEachPieceIsOfInSlices) {
+  ScanLabel label;
+  label.datum = {43.7, -72.3, 100.0};
+  Picture picture;
+  picture.tracks.resize(2);
+  for (auto& track : picture.tracks) track.outline_m = {{0.0, 0.0}};
+  for (std::int64_t piece = 1; piece <= 32'767; ++piece) picture.track_of_piece.push_back(piece % 3 == 0 ? kNoTrack : piece % 3 == 1 ? 0 : -piece);
+  const auto parts = ToMessages(label, picture, bus::kMaxMessageBytes);
+  ASSERT_EQ(parts.size(), 3U);
+  std::vector<std::int64_t> track_of_piece;
+  for (const auto& part : parts) {
+    EXPECT_LE(part.getEncodedSize(), bus::kMaxMessageBytes);
+    EXPECT_TRUE(messages::IsWellFormed(part));
+    EXPECT_EQ(part.num_parts, 3);
+    EXPECT_EQ(part.first_piece, messages::CountOf(track_of_piece) + 1);
+    EXPECT_EQ(part.num_pieces, messages::CountOf(part.track_of_piece));
+    track_of_piece.insert(track_of_piece.end(), part.track_of_piece.begin(), part.track_of_piece.end());
+  }
+  EXPECT_EQ(parts[0].num_tracks, 2);
+  EXPECT_EQ(track_of_piece, picture.track_of_piece);
+}
+
+TEST(TracksMessage, HasNoPiecesWithoutSegments) {
+  const auto parts = ToMessages(ScanLabel{}, Picture{}, bus::kMaxMessageBytes);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].first_piece, 0);
+  EXPECT_EQ(parts[0].num_pieces, 0);
+}
+
+TEST(WellFormedTracks, HaveSlicesOfPiecesThatExist) {
+  tracks_t message{};
+  message.num_parts = 1;
+  message.num_pieces = 2;
+  message.track_of_piece = {-5, 3};
+  message.first_piece = 1;
+  EXPECT_TRUE(messages::IsWellFormed(message));
+  message.first_piece = 32'766;
+  EXPECT_TRUE(messages::IsWellFormed(message));
+  for (const std::int32_t first : {0, -1, 32'767, 2'147'483'647}) {
+    message.first_piece = first;
+    EXPECT_FALSE(messages::IsWellFormed(message)) << first;
+  }
+}
+
 TEST(TracksMessage, TurnsAnglesOfTheMapIntoBearings) {
   Picture picture;
   Track& track = picture.tracks.emplace_back();

@@ -120,9 +120,11 @@ TEST(Decode, RefusesCountsThatTheBytesCannotFill) {
   ExpectCountRefused(filled(lidar_scan_t{}), &lidar_scan_t::num_columns);
   ExpectCountRefused(filled(lidar_scan_t{}), &lidar_scan_t::num_cells);
   ExpectCountRefused(filled(segments_t{}), &segments_t::num_cells);
+  ExpectCountRefused(filled(segments_t{}), &segments_t::num_labelled);
   ExpectCountRefused(filled(segments_t{}), &segments_t::num_segments);
   ExpectCountRefused(filled(nav_raw_t{}), &nav_raw_t::num_imu);
   ExpectCountRefused(filled(obstacles_t{}), &obstacles_t::num_obstacles);
+  ExpectCountRefused(filled(tracks_t{}), &tracks_t::num_pieces);
   ExpectCountRefused(filled(health_t{}), &health_t::num_channels);
   ExpectCountRefused(filled(health_t{}), &health_t::num_counters);
   ExpectCountRefused(filled(run_info_t{}), &run_info_t::num_files);

@@ -57,6 +57,8 @@ inline void Fill(lidar_nmea_t& m) { m.sentence = "$GPRMC,120000,A*00"; }
 inline void Fill(segments_t& m) {
   m.num_cells = 4;
   m.label = {1, 0, -1, 2};
+  m.num_labelled = 2;
+  m.piece = {1, 3};
   m.num_segments = 2;
   m.segments.resize(2);
   for (auto& segment : m.segments) {
@@ -114,6 +116,9 @@ inline void Fill(tracks_t& m) {
   }
   m.num_land_segments = 2;
   m.land_segment_ids = {1, 2};
+  m.first_piece = 1;
+  m.num_pieces = 3;
+  m.track_of_piece = {17, 0, -1};
   m.num_waterline = 2;
   m.waterline_east_m = m.waterline_north_m = {1.0F, 2.0F};
 }

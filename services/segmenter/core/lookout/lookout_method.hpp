@@ -54,6 +54,7 @@ class LookoutMethod {
 
   const ScanGrid& grid() const { return grid_; }
   const PieceTable& pieces() const { return pieces_; }
+  const TightPieces& tight_pieces() const { return tight_; }
   std::int32_t num_tight_pieces() const { return tight_.count(); }
   std::int32_t num_left_out() const { return tight_.num_left_out(); }
 
