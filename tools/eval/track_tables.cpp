@@ -38,10 +38,9 @@ std::string BandOf(std::int64_t num_things) {
 
 void Add(TrackRun::Row& sum, const TrackRun::Row& row) {
   sum.scores.Add(row.scores);
-  sum.labels.has_structures = sum.labels.has_structures || row.labels.has_structures;
   sum.labels.segments.Add(row.labels.segments);
-  sum.labels.segments_land_one.Add(row.labels.segments_land_one);
-  sum.labels.tracks_land_one.Add(row.labels.tracks_land_one);
+  sum.labels.single.Add(row.labels.single);
+  sum.labels.by_tracks.Add(row.labels.by_tracks);
 }
 
 // A scene counts as one, however many scans it has.
@@ -121,16 +120,26 @@ NamedTable Approaches(const std::vector<TrackRow>& rows) {
   return {"tracks_approaches", "tracks: closest approach, and what was warned of", std::move(table)};
 }
 
+// A row for the labels of single scans, which are the same whoever tracks, then one for each tracker.
 NamedTable Labels(const std::vector<TrackRow>& rows) {
-  Table table({"scene", "tracker", "scans (all: scenes)", "segments_%", "segments_land_one_%", "tracks_land_one_%", "gain"});
+  Table table({"scene", "labels", "scans (all: scenes)", "land_apart_%", "mIoU_%", "gain", "land_%", "land_too_many", "lost_%", "PQ_%", "SQ_%",
+               "RQ_%", "OSE", "USE"});
+  const auto add = [&table](const std::string& scene, const std::string& labels, const LabelFigures& figures, const std::string& apart,
+                            const std::string& gain) {
+    table.Add({scene, labels, Number(figures.iou.count), apart, Number(Percent(figures.iou.value()), 1), gain,
+               Number(Percent(figures.land_iou.value()), 1), Number(figures.land_too_many.value(), 1), Number(Percent(figures.lost.value()), 1),
+               Number(Percent(figures.panoptic_quality.value()), 1), Number(Percent(figures.segmentation_quality.value()), 1),
+               Number(Percent(figures.recognition_quality.value()), 1), Number(figures.over_entropy.value(), 2),
+               Number(figures.under_entropy.value(), 2)});
+  };
+  std::string last_scene;
   for (const auto& [scene, row] : rows) {
-    const auto& labels = row.labels;
-    if (labels.segments.count == 0) continue;
-    table.Add({scene, row.tracker, Number(labels.segments.count), Number(Percent(labels.segments.value()), 1),
-               Number(Percent(labels.segments_land_one.value()), 1), Number(Percent(labels.tracks_land_one.value()), 1),
-               Number(Percent(labels.tracks_land_one.value() - labels.segments_land_one.value()), 1)});
+    if (row.labels.segments.count == 0) continue;
+    if (scene != last_scene) add(scene, "single scans", row.labels.single, Number(Percent(row.labels.segments.value()), 1), "-");
+    last_scene = scene;
+    add(scene, row.tracker, row.labels.by_tracks, "-", Number(Percent(row.labels.Gain()), 1));
   }
-  return {"tracks_labels", "labels of returns: mIoU of SEGMENTS and of TRACKS", std::move(table)};
+  return {"tracks_labels", "labels of returns: of single scans (SEGMENTS) and by tracks", std::move(table)};
 }
 
 }  // namespace
@@ -155,8 +164,8 @@ std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::stri
     if (same == all.end()) same = all.insert(all.end(), {name, {row.tracker, {}, {}}});
     same->row.scores.Add(row.scores);
     AddValue(same->row.labels.segments, row.labels.segments);
-    AddValue(same->row.labels.segments_land_one, row.labels.segments_land_one);
-    AddValue(same->row.labels.tracks_land_one, row.labels.tracks_land_one);
+    same->row.labels.single.AddValues(row.labels.single);
+    same->row.labels.by_tracks.AddValues(row.labels.by_tracks);
   }
   return all;
 }
