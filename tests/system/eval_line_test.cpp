@@ -60,7 +60,7 @@ TEST_F(EvalLine, TracksHaveTheirOwnTablesAndSeeds) {
   with_files.insert(with_files.end(), {"--csv", Path("csv"), "--lost", Path("lost.csv")});
   const auto result = Run(with_files);
   EXPECT_EQ(result.exit_code, 0) << result.output;
-  for (const auto* text : {"MOTA_%", "confirmed_median_s", "standing_mps", "tracks_land_one_%", "nearest neighbour", "all scenes"}) {
+  for (const auto* text : {"MOTA_%", "confirmed_median_s", "standing_mps", "land_too_many", "nearest neighbour", "all scenes"}) {
     EXPECT_NE(result.output.find(text), std::string::npos) << text;
   }
   EXPECT_TRUE(fs::exists(Path("csv") + "/tracks_identities.csv"));

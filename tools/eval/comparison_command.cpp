@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -25,16 +26,19 @@
 #include "tools/eval/lost_list.hpp"
 #include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
+#include "tools/eval/over_time.hpp"
 #include "tools/eval/paper_tests.hpp"
 #include "tools/eval/projection.hpp"
 #include "tools/eval/report_page.hpp"
 #include "tools/eval/result_tables.hpp"
 #include "tools/eval/sweep.hpp"
+#include "tools/eval/track_sources.hpp"
 #include "tools/eval/worst_pictures.hpp"
 #include "tools/import/kitti.hpp"
 #include "tools/import/organise.hpp"
 #include "tools/import/pcd.hpp"
 #include "tools/import/scan_message.hpp"
+#include "tools/replay/chain.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace lookout::eval {
@@ -74,6 +78,18 @@ constexpr const char* kSecondWorld = "second world";
 std::unique_ptr<Method> LeftOutOfCaptures(const ComparisonOptions& options, const Boat& boat) {
   const auto evidence = LeaveOutEvidence(options.weights_folder, {}).FileOf(kSecondWorld);
   return std::make_unique<SegmenterMethod>(std::string(kLeftOut), WithEvidence(boat, evidence));
+}
+
+// Methods by name and group; the boat over time stands behind ours.
+Methods MethodsOf(const ComparisonOptions& options, const Boat& boat, const std::function<std::unique_ptr<Method>()>& make_over_time) {
+  auto names = options.methods;
+  const bool is_over_time = std::ranges::any_of(names, [](const auto& name) { return name == "all" || name == "ours" || name == kOverTime; });
+  std::erase(names, kOverTime);
+  auto methods = MakeMethods(boat.segmenter, names);
+  if (!is_over_time) return methods;
+  const auto behind_ours = std::ranges::find_if_not(methods, [](const auto& method) { return method->name().starts_with("ours"); });
+  methods.insert(behind_ours, make_over_time());
+  return methods;
 }
 
 // The column of the tables in which recordings stand.
@@ -175,7 +191,8 @@ Results RunCaptures(const ComparisonOptions& options, Failures& failures) {
   const auto captures = ListCaptures(options.captures);
   if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
   const auto boat = LoadBoatOfCaptures(options.captures, options.config_folder);
-  auto methods = MakeMethods(boat.segmenter, options.methods);
+  const ConfigOfCaptures config(options.captures, options.config_folder);
+  auto methods = MethodsOf(options, boat, [&] { return std::make_unique<OverTimeMethod>(config.path(), FeedOfCaptures(captures)); });
   if (!options.left_out.empty()) methods.insert(methods.begin(), LeftOutOfCaptures(options, boat));
   World world(boat.segmenter, methods, failures.HandlerOf(kSecondWorld));
   runtime::Progress progress("lookout-eval", stderr);
@@ -244,7 +261,10 @@ int CompareMethods(const ComparisonOptions& options) {
   std::vector<std::string> scenes;
   for (const auto& scene : plan.scenes) scenes.push_back(SceneLabel(scene));
   if (!options.points.empty()) scenes.push_back(kPointsLabel);
-  auto methods = MakeMethods(boat.segmenter, options.methods);
+  auto methods = MethodsOf(options, boat, [&] {
+    replay::CheckConfig(options.config_folder);
+    return std::make_unique<OverTimeMethod>(options.config_folder, FeedOfScenes(options.config_folder, plan.scenes, plan.seconds));
+  });
   if (!options.left_out.empty()) {
     methods.insert(methods.begin(), std::make_unique<LeaveOutMethod>(boat, LeaveOutEvidence(options.weights_folder, LeftOutOf(options)), scenes));
     if (!options.captures.empty()) LeftOutOfCaptures(options, boat);  // what is missing stops the run before it begins

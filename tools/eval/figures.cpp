@@ -24,7 +24,7 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 20> kFigureNames{"main",
+constexpr std::array<std::string_view, 21> kFigureNames{"main",
                                                         "times",
                                                         "miou",
                                                         "false",
@@ -37,6 +37,7 @@ constexpr std::array<std::string_view, 20> kFigureNames{"main",
                                                         "sweeps",
                                                         "tests",
                                                         "tracks_identities",
+                                                        "tracks_gospa",
                                                         "tracks_times",
                                                         "tracks_states",
                                                         "tracks_labels",

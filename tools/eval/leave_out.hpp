@@ -49,7 +49,10 @@ class LeaveOutMethod final : public Method {
   std::string name() const override { return std::string(kLeftOut); }
   bool knows_doubt() const override { return true; }
   /// Precondition: one of the scenes of the constructor
-  void BeginScene(const std::string& scene) override { current_ = &of_scene_.at(scene); }
+  bool BeginScan(const ScanPlace& place) override {
+    current_ = &of_scene_.at(place.scene);
+    return true;
+  }
   Labelling Segment(const segmenter::Scan& scan) override { return (*current_)->Segment(scan); }
 
  private:

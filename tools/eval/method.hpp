@@ -22,6 +22,13 @@ using importer::ScanObject;
 /// Label of a return that the method was told not to look at, outside of its field of view: it does not count for its score.
 inline constexpr std::int32_t kNotScored = -1;
 
+/// Where a scan comes from.
+struct ScanPlace {
+  std::string scene;
+  std::uint64_t seed = 0;
+  int index = 0;  // of the scene and seed, from 0
+};
+
 /// What a method says of one scan.
 struct Labelling {
   std::vector<std::int32_t> label;  // [cells of the scan] id of a segment from 1; 0 = no return, or in no segment; or kNotScored
@@ -34,6 +41,8 @@ struct Labelling {
   std::vector<std::pair<std::string, std::chrono::nanoseconds>> stages{};
   /// Spent on measuring the stages once more, not on the method: taken off its time.
   std::chrono::nanoseconds untimed{0};
+  /// false: the labels were made elsewhere, and the time that it took to give them says nothing.
+  bool is_timed = true;
 };
 
 class Method {
@@ -49,10 +58,11 @@ class Method {
   /// It takes some of its segments for tentative: it is scored at two operating points, all segments and the sure ones alone.
   virtual bool knows_doubt() const { return false; }
 
-  /// The scans that follow are of this scene: for methods that must not know anything of it.
-  virtual void BeginScene(const std::string& /*scene*/) {}
+  /// The scan that follows is that of this place: for methods that must not know anything of its scene, or that know the scans before it.
+  /// @return false: it does not label such scans, and has no score there
+  virtual bool BeginScan(const ScanPlace& /*place*/) { return true; }
 
-  /// Pure but for its time: the same scan gives the same labels.
+  /// Pure but for its time: the same scan of the same place gives the same labels.
   virtual Labelling Segment(const segmenter::Scan& scan) = 0;
 };
 

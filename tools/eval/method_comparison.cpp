@@ -25,7 +25,10 @@ void MethodComparison::Add(const ScanPlace& place, const LabelledScan& truth) {
   auto result = results_.begin();
   const auto near_land = NearLand(truth, Score::kNearLandM);
   for (const auto& method : methods_) {
-    method->BeginScene(place.scene);
+    if (!method->BeginScan(place)) {
+      result += method->knows_doubt() ? 2 : 1;
+      continue;
+    }
     const auto begin = std::chrono::steady_clock::now();
     auto labelling = method->Segment(truth.scan);
     const double time_ms = ToMs(std::chrono::steady_clock::now() - begin - labelling.untimed);
@@ -42,7 +45,7 @@ void MethodComparison::AddPoint(MethodResult& result, const ScanPlace& place, co
                                 Labelling labelling, double time_ms) {
   Score score = ScoreScan(truth, labelling, near_land);
   if (on_scored_) on_scored_(result.method, place, truth, labelling.label, score);
-  score.time_ms.push_back(time_ms);
+  if (labelling.is_timed) score.time_ms.push_back(time_ms);
   result.by_scene[place.scene].Add(score);
   if (score.iou.count > 0) KeepIfBad(result, place, score.iou.value(), truth, std::move(labelling.label));
 }

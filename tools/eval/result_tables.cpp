@@ -77,11 +77,11 @@ Table::Row TimeCells(const std::vector<double>& time_ms) {
   return {Number(summary.Median(), 3), Number(summary.Percentile(99), 3)};
 }
 
-// A row for each method: these figures, then its times.
-Table OfMethods(const Results& results, std::span<const Column> columns, bool (*is_wanted)(const Score& total)) {
+// A row for each method: these figures, then its times where they are wanted.
+Table OfMethods(const Results& results, std::span<const Column> columns, bool (*is_wanted)(const Score& total), bool has_times = true) {
   Table::Row header{"method"};
   for (const auto& column : columns) header.emplace_back(column.heading);
-  header.insert(header.end(), {"median_ms", "p99_ms"});
+  if (has_times) header.insert(header.end(), {"median_ms", "p99_ms"});
   Table table(header);
   for (const auto& method : results.methods) {
     const Score total = Total(method);
@@ -90,7 +90,7 @@ Table OfMethods(const Results& results, std::span<const Column> columns, bool (*
     for (const auto& column : columns) {
       row.push_back(column.Text(column.is_of_all ? (total.*column.figure).value() : MeanOverScenes(results, method, column.figure)));
     }
-    const auto times = TimeCells(total.time_ms);
+    const auto times = has_times ? TimeCells(total.time_ms) : Table::Row{};
     row.insert(row.end(), times.begin(), times.end());
     table.Add(row);
   }
@@ -105,6 +105,9 @@ constexpr std::array kOverall{Column{"mIoU_%", &Score::iou, Column::kPercent},
                               Column{"over_%", &Score::over_segmented, Column::kPercent, true},
                               Column{"under_%", &Score::under_segmented, Column::kPercent, true},
                               Column{"TPR_%", &Score::true_positives, Column::kPercent, true}};
+constexpr std::array kLabelQuality{
+    Column{"PQ_%", &Score::panoptic_quality, Column::kPercent}, Column{"SQ_%", &Score::segmentation_quality, Column::kPercent},
+    Column{"RQ_%", &Score::recognition_quality, Column::kPercent}, Column{"OSE", &Score::over_entropy, 2}, Column{"USE", &Score::under_entropy, 2}};
 // With and without a step of the segmenter.
 constexpr std::array kAblation{Column{"mIoU_%", &Score::iou, Column::kPercent}, Column{"components", &Score::components, 1},
                                Column{"segments", &Score::segments, 2}, Column{"false", &Score::false_segments, 2}};
@@ -196,6 +199,9 @@ std::vector<NamedTable> TablesOfWorld(const Results& results) {
       ByScene(results, &Score::with_segment));
   add("overall", "all scenes (mIoU, water, false, things with a segment, segments: mean over scenes; over, under, TPR, times: over all scans)",
       OfMethods(results, kOverall, [](const Score&) { return true; }));
+  add("label_quality", "panoptic quality, entropies of over- and under-segmentation a scan (mean over scenes)",
+      OfMethods(
+          results, kLabelQuality, [](const Score& total) { return total.iou.count > 0; }, false));
   add("against_peers", "ours against the best peer: 100 - mIoU of ours as a share of the peer's, %", AgainstPeers(results));
   add("kinds", "mean IoU by kind, all scenes, %", ByKey(results, &Score::iou_by_kind, kind_title));
   add("recall_by_range", "recall at IoU 0.5 by range of the nearest return, all scenes, %", ByKey(results, &Score::recall_by_range, range_title));

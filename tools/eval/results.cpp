@@ -14,8 +14,9 @@ void AddTo(auto& means, const auto& more) {
 
 void Score::Add(const Score& other) {
   for (const auto mean : {&Score::iou, &Score::water_iou, &Score::segments, &Score::false_segments, &Score::with_segment, &Score::over_segmented,
-                          &Score::under_segmented, &Score::true_positives, &Score::components, &Score::near_land_found, &Score::land_segments,
-                          &Score::segments_of_land_object}) {
+                          &Score::under_segmented, &Score::over_entropy, &Score::under_entropy, &Score::panoptic_quality,
+                          &Score::segmentation_quality, &Score::recognition_quality, &Score::true_positives, &Score::components,
+                          &Score::near_land_found, &Score::land_segments, &Score::segments_of_land_object}) {
     (this->*mean).Add(other.*mean);
   }
   AddTo(iou_by_kind, other.iou_by_kind);

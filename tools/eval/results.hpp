@@ -42,6 +42,11 @@ struct Score {
   Confidence confidence;            // where the method states probabilities
   Mean over_segmented;              // share of object-scans: two or more segments hold a tenth each
   Mean under_segmented;             // share of segments: hold a tenth each of two or more objects
+  Mean over_entropy;                // a scan with a return of an object (EntropyOf)
+  Mean under_entropy;               // the same
+  Mean panoptic_quality;            // PanopticQualityOf
+  Mean segmentation_quality;        // the same
+  Mean recognition_quality;         // the same
   Mean true_positives;              // share of returns of objects: in a segment that belongs (by majority) to their object, the paper's TPR
   Mean components;                  // a scan, before clustering; of methods that say how many
   std::int64_t num_not_scored = 0;  // returns that the method was told not to look at

@@ -30,12 +30,6 @@ struct RunPlan {
   void CheckSeeds(SeedUse use) const;
 };
 
-struct ScanPlace {
-  std::string scene;
-  std::uint64_t seed = 0;
-  int index = 0;  // of the scene and seed, from 0
-};
-
 /// As it stands in tables: the name itself, or that of the file without folder and ending.
 std::string SceneLabel(const std::string& name_or_path);
 

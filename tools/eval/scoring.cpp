@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tools/eval/label_entropy.hpp"
+
 namespace lookout::eval {
 
 Labelling SureOnly(Labelling labelling) {
@@ -108,6 +110,13 @@ Score ScoreScan(const LabelledScan& truth, const Labelling& labelling, const std
     if (segment.majority_object > 0) score.true_positives.sum += static_cast<double>(segment.num_of_majority);
   }
   CountLandSegments(truth, matches, score);
+  const auto entropy = EntropyOf(matches);
+  score.over_entropy.Add(entropy.over);
+  score.under_entropy.Add(entropy.under);
+  const auto panoptic = PanopticQualityOf(matches);
+  score.panoptic_quality.Add(panoptic.quality);
+  score.segmentation_quality.Add(panoptic.segmentation);
+  score.recognition_quality.Add(panoptic.recognition);
   score.confidence = ConfidenceOf(matches, labelling, Score::kMinReturnsOfThing);
   score.segments.Add(static_cast<double>(matches.segments.size()));
   score.false_segments.Add(num_false);

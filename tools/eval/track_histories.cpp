@@ -97,6 +97,27 @@ void ScoreConfirmation(const History& history, TrackScores& scores) {
   }
 }
 
+void ScoreNearBuoy(const History& history, TrackScores& scores) {
+  const auto& moments = history.moments;
+  if (!moments.front().thing->is_buoy) return;
+  const auto is_near = [](const History::Moment& one) {
+    constexpr double kNearM = TrackScores::kNearBuoyM;
+    return one.scan->own && HullGap({CenterOf(one.scan->own->outline_m)}, one.thing->outline_m, kNearM) <= kNearM;
+  };
+  const auto first = std::ranges::find_if(moments, is_near);
+  bool was_seen = false;
+  for (auto one = first; one != moments.end(); ++one) {
+    if (SecondsBetween(first->utime_us, one->utime_us) > TrackScores::kNearBuoyS) {
+      if (was_seen) scores.near_buoy_tracked.Add(0.0);
+      return;
+    }
+    was_seen = was_seen || one->thing->num_returns > 0;
+    if (one->track == nullptr) continue;
+    scores.near_buoy_tracked.Add(1.0);
+    return;
+  }
+}
+
 void ScoreHidden(const History& history, TrackScores& scores) {
   const auto& moments = history.moments;
   std::optional<std::size_t> last_seen;
@@ -299,6 +320,7 @@ std::map<int, History> HistoriesOf(std::span<const TrueScan> truth, std::span<co
 
 void ScoreHistory(const History& history, const ApproachLimits& limits, TrackScores& scores) {
   ScoreConfirmation(history, scores);
+  ScoreNearBuoy(history, scores);
   ScoreHidden(history, scores);
   ScoreMotion(history, scores);
   ScoreApproaches(history, limits, scores);

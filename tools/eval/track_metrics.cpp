@@ -65,16 +65,19 @@ void ScoreClear(std::span<const TrueScan> truth, std::span<const std::vector<Tra
       before->second = track->second->id;
     }
     std::vector<Eigen::Vector2d> estimates_m;
+    bool has_double = false;
     for (const auto& track : tracks[n]) {
       const auto verdict = run[n].verdict_of.find(track.id);
       if (verdict == run[n].verdict_of.end() || verdict->second == Verdict::kExcused) continue;
       estimates_m.push_back(track.position_m);
       if (verdict->second == Verdict::kHit) continue;
+      has_double = has_double || verdict->second == Verdict::kDouble;
       ++scores.num_false;
       const auto [nearest, gap_m] = NearestThing(track, truth[n]);
       scores.events.push_back(
           {TrackEvent::What::kFalse, truth[n].utime_us, 0, 0, track.id, track.position_m, nearest, gap_m, track.velocity_mps.norm()});
     }
+    scores.has_double.Add(has_double ? 1.0 : 0.0);
     scores.gospa.Add(GospaOf(truths_m, estimates_m));
   }
   scores.num_runs_without_switch = scores.num_switches == 0 ? 1 : 0;
@@ -99,6 +102,8 @@ void ScoreIdentities(std::span<const Matched> run, TrackScores& scores) {
     ++scores.num_false_tracks;
     if (of(Verdict::kDouble) > of(Verdict::kFalse)) ++scores.num_double_tracks;
   }
+  scores.num_reported_ids = std::ssize(num_by_verdict);
+  scores.greatest_ids = num_by_verdict.empty() ? 0 : num_by_verdict.rbegin()->first;
   std::map<int, Eigen::Index> row_of;
   std::map<std::int64_t, Eigen::Index> column_of;
   for (const auto& [pair, count] : num_together) {
@@ -113,6 +118,21 @@ void ScoreIdentities(std::span<const Matched> run, TrackScores& scores) {
   }
 }
 
+// The same things and tracks as in ScoreClear.
+TrajectoryGospa TrajectoryGospaOfRun(std::span<const TrueScan> truth, std::span<const std::vector<TrackState>> tracks, std::span<const Matched> run) {
+  std::vector<TrajectoryScan> scans(truth.size());
+  for (std::size_t n = 0; n < truth.size(); ++n) {
+    for (const auto& thing : truth[n].things) {
+      if (IsExpected(thing)) scans[n].truths_m.emplace_back(thing.id, thing.position_m);
+    }
+    for (const auto& track : tracks[n]) {
+      const auto verdict = run[n].verdict_of.find(track.id);
+      if (verdict != run[n].verdict_of.end() && verdict->second != Verdict::kExcused) scans[n].estimates_m.emplace_back(track.id, track.position_m);
+    }
+  }
+  return TrajectoryGospaOf(scans);
+}
+
 }  // namespace
 
 double TrackScores::Mota() const {
@@ -125,7 +145,12 @@ double TrackScores::Idf1() const {
   return 2.0 * static_cast<double>(num_id_true) / static_cast<double>(num_expected + num_id_tracked);
 }
 
-double TrackScores::FalseTracksPerMinute() const { return static_cast<double>(num_false_tracks) / (seconds / 60.0); }
+double TrackScores::FalseTracksPerHour() const { return static_cast<double>(num_false_tracks) / (seconds / 3600.0); }
+
+double TrackScores::IdsPerTrack() const {
+  if (num_reported_ids == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(greatest_ids) / static_cast<double>(num_reported_ids);
+}
 
 void TrackScores::Add(const TrackScores& other) {
   num_runs += other.num_runs;
@@ -139,7 +164,13 @@ void TrackScores::Add(const TrackScores& other) {
   num_id_tracked += other.num_id_tracked;
   num_false_tracks += other.num_false_tracks;
   num_double_tracks += other.num_double_tracks;
+  has_double.Add(other.has_double);
+  num_reported_ids += other.num_reported_ids;
+  greatest_ids += other.greatest_ids;
+  hota.Add(other.hota);
   gospa.Add(other.gospa);
+  trajectory_gospa.Add(other.trajectory_gospa);
+  near_buoy_tracked.Add(other.near_buoy_tracked);
   for (std::size_t i = 0; i < confirmed_s.size(); ++i) confirmed_s.at(i).Add(other.confirmed_s.at(i));
   num_hidden += other.num_hidden;
   num_found_again += other.num_found_again;
@@ -206,6 +237,8 @@ TrackScores ScoreTracks(std::span<const TrueScan> truth, std::span<const std::ve
   for (std::size_t n = 0; n < truth.size(); ++n) run.push_back(matcher.Match(truth[n], tracks[n]));
   ScoreClear(truth, tracks, run, scores);
   ScoreIdentities(run, scores);
+  scores.hota = HotaOf(truth, run);
+  scores.trajectory_gospa = TrajectoryGospaOfRun(truth, tracks, run);
   for (const auto& [id, history] : HistoriesOf(truth, run, alerts)) ScoreHistory(history, limits, scores);
   std::ranges::stable_sort(scores.events, {}, &TrackEvent::utime_us);
   std::set<std::int64_t> raised;

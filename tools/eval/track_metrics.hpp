@@ -7,10 +7,12 @@
 #include <span>
 #include <vector>
 
+#include "tools/eval/hota.hpp"
 #include "tools/eval/metrics.hpp"
 #include "tools/eval/track_gospa.hpp"
 #include "tools/eval/track_matching.hpp"
 #include "tools/eval/track_scan.hpp"
+#include "tools/eval/trajectory_gospa.hpp"
 
 namespace lookout::eval {
 
@@ -68,10 +70,19 @@ struct TrackScores {
   std::int64_t num_id_tracked = 0;     // reported, and not left out
   std::int64_t num_false_tracks = 0;   // ids that are false in most of the scans in which they are reported
   std::int64_t num_double_tracks = 0;  // of these, those that lie on a thing that has another track
+  Mean has_double;                     // share of the scans: a thing that must be tracked has a further track
+  std::int64_t num_reported_ids = 0;   // tracks that were ever reported
+  std::int64_t greatest_ids = 0;       // the greatest id of these; sum over the runs
+  Hota hota;
   Gospa gospa{.num_scans = 0};
+  TrajectoryGospa trajectory_gospa;
 
   // From the first return to the first scan with a reported track: [0] of 5 returns or more a scan (median), [1] of 1 to 4. Infinite: never.
   std::array<Summary, 2> confirmed_s;
+  // Of buoys that came within kNearBuoyM of the middle of the own boat and had a return in the kNearBuoyS from then on: had a track by then.
+  static constexpr double kNearBuoyM = 25.0;
+  static constexpr double kNearBuoyS = 2.0;
+  Mean near_buoy_tracked;
   // Between two scans in which a thing had 5 returns or more lay 1 to 10 s with scans without any: the track is the same within 1 s.
   std::int64_t num_hidden = 0;
   std::int64_t num_found_again = 0;
@@ -111,7 +122,9 @@ struct TrackScores {
   /// Both 0 to 1 (MOTA also below 0); NaN where nothing had to be tracked.
   double Mota() const;
   double Idf1() const;
-  double FalseTracksPerMinute() const;
+  double FalseTracksPerHour() const;
+  /// Greatest id over the number of tracks that were reported: 1 where no number is wasted. NaN without any.
+  double IdsPerTrack() const;
   void Add(const TrackScores& other);
 };
 

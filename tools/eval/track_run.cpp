@@ -14,8 +14,6 @@ namespace {
 
 // A scan waits for its obstacles, and then for its tracks, for some seconds of scans at most.
 constexpr std::size_t kMaxWaiting = 256;
-constexpr int kLandLabel = 1;
-constexpr int kFirstLabel = 2;  // of other segments and tracks
 // Returns stand in the truth in the order of time, and scans come in theirs.
 constexpr std::int64_t kKeptUs = 2'000'000;
 
@@ -39,61 +37,7 @@ bool IsPlacedAsAWhole(const messages::ScanMessages& scan) {
   });
 }
 
-// Tracks merge segments and split off land; a segment that no track explains keeps its own label. So these differ from the labels of SEGMENTS only
-// where the tracker says something of its own.
-std::map<int, int> LabelsOf(const std::vector<TrackState>& tracks, const std::set<int>& land) {
-  std::map<int, int> labels;
-  int label = kFirstLabel;
-  for (const auto& track : tracks) {
-    if (track.status == TrackStatus::kLost) continue;
-    for (const auto segment : track.segment_ids) labels[segment] = label;
-    ++label;
-  }
-  for (const int segment : land) labels[segment] = kLandLabel;
-  return labels;
-}
-
-// Labels by what TRACKS say of pieces, from 1 on; 0 = the return keeps the label of its segment.
-struct PieceLabels {
-  std::vector<int> of_piece;  // by its number
-  int last = kLandLabel;
-};
-
-// Empty where TRACKS say nothing of pieces.
-PieceLabels PieceLabelsOf(const std::vector<tracks_t>& parts) {
-  PieceLabels labels;
-  std::map<std::int64_t, int> label_of_track;
-  for (const auto& part : parts) {
-    if (part.num_pieces == 0) continue;
-    const auto first = static_cast<std::size_t>(part.first_piece);
-    labels.of_piece.resize(std::max(labels.of_piece.size(), first + part.track_of_piece.size()), 0);
-    for (std::size_t i = 0; i < part.track_of_piece.size(); ++i) {
-      const auto track_id = part.track_of_piece[i];
-      if (track_id < tracks_t::PIECE_LAND) continue;
-      const auto next = kFirstLabel + static_cast<int>(label_of_track.size());
-      const int label = track_id == tracks_t::PIECE_LAND ? kLandLabel : label_of_track.try_emplace(track_id, next).first->second;
-      labels.of_piece[first + i] = label;
-      labels.last = std::max(labels.last, label);
-    }
-  }
-  return labels;
-}
-
-void AddTo(Mean& mean, const std::optional<double>& value) {
-  if (value) mean.Add(*value);
-}
-
 }  // namespace
-
-// @param labels  outlives what is returned
-std::function<int(const TrackRun::LabelledReturn&)> TrackRun::BySegment(const std::map<int, int>& labels) {
-  int last = kFirstLabel;
-  for (const auto& [segment, label] : labels) last = std::max(last, label);
-  return [&labels, last](const LabelledReturn& one) {
-    const auto label = labels.find(one.label);
-    return label == labels.end() ? last + one.label : label->second;
-  };
-}
 
 TrackState ToTrackState(const track_t& track) {
   TrackState state;
@@ -128,9 +72,6 @@ TrackRun::TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns, 
                  }) {
   for (const auto& tracker : trackers_) said_.push_back({tracker->name(), {}, {}, {}});
   own_.tracker = "lookout";
-  const bool has_structures = std::ranges::any_of(objects_, [](const auto& object) { return object.first > 0 && !object.second.is_in_water; });
-  own_.labels.has_structures = has_structures;
-  for (auto& said : said_) said.labels.has_structures = has_structures;
 }
 
 bool TrackRun::Add(std::string_view channel, Bytes bytes) {
@@ -179,20 +120,27 @@ std::vector<TrackRun::LabelledReturn> TrackRun::Join(const messages::ScanMessage
   return returns;
 }
 
-std::optional<double> TrackRun::IouOf(const std::vector<LabelledReturn>& returns, bool is_land_one,
-                                      const std::function<int(const LabelledReturn&)>& label_of) const {
+LabelFigures TrackRun::FiguresOf(const std::vector<LabelledReturn>& returns, bool is_land_one,
+                                 const std::function<int(const LabelledReturn&)>& label_of) const {
   // Objects of Confusion are above 0.
   const int land_id = objects_.rbegin()->first + 1;
   Confusion confusion;
+  std::set<int> land;
   std::map<int, int> object_of;  // asked for each return: land or not
-  for (const auto& [id, object] : objects_) object_of[id] = is_land_one && id > 0 && IsLand(object) ? land_id : id;
+  for (const auto& [id, object] : objects_) {
+    const bool is_land = id > 0 && IsLand(object);
+    object_of[id] = is_land && is_land_one ? land_id : id;
+    if (is_land) land.insert(object_of[id]);
+  }
   for (const auto& one : returns) {
     const auto object = object_of.find(one.object);
     confusion.Add(object == object_of.end() ? 0 : object->second, one.label > 0 ? label_of(one) : 0);
   }
-  Mean iou;
-  for (const auto& [id, object] : confusion.Match().objects) iou.Add(object.iou);
-  return iou.count > 0 ? std::optional(iou.value()) : std::nullopt;
+  return LabelFiguresOf(confusion.Match(), land);
+}
+
+LabelFigures TrackRun::FiguresOf(const std::vector<LabelledReturn>& returns, const TrackLabels& labels) const {
+  return FiguresOf(returns, true, [&labels](const LabelledReturn& one) { return labels.Of(one.label, one.piece); });
 }
 
 void TrackRun::OnScan(const messages::ScanMessages& scan) {
@@ -213,23 +161,23 @@ void TrackRun::OnScan(const messages::ScanMessages& scan) {
 
   const auto land = LandOf(scan);
   if (!scan.segments.empty()) {
-    AddTo(waiting.own_labels.segments, IouOf(waiting.returns, false, [](const LabelledReturn& one) { return one.label; }));
-    AddTo(waiting.own_labels.segments_land_one,
-          IouOf(waiting.returns, true, [&](const LabelledReturn& one) { return land.contains(one.label) ? kLandLabel : kFirstLabel + one.label; }));
+    const auto apart = FiguresOf(waiting.returns, false, [](const LabelledReturn& one) { return one.label; });
+    waiting.own_labels.segments = apart.iou;
+    waiting.own_labels.single = FiguresOf(waiting.returns, TrackLabels({}, land));
+    waiting.own_labels.single.land_too_many = apart.land_too_many;
   }
   for (std::size_t i = 0; i < said_.size(); ++i) {
     auto& said = said_[i];
     said.labels.segments.Add(waiting.own_labels.segments);
-    said.labels.segments_land_one.Add(waiting.own_labels.segments_land_one);
-    const auto labels = LabelsOf(tracks[i], land);
-    if (!scan.segments.empty()) AddTo(said.labels.tracks_land_one, IouOf(waiting.returns, true, BySegment(labels)));
+    said.labels.single.Add(waiting.own_labels.single);
+    if (!scan.segments.empty()) said.labels.by_tracks.Add(FiguresOf(waiting.returns, TrackLabels(tracks[i], land)));
     said.tracks.push_back(std::move(tracks[i]));
   }
   own_.tracks.emplace_back();
   own_.alerts.emplace_back();
   scan_at_[scan.utime_us] = waiting.index;
   own_.labels.segments.Add(waiting.own_labels.segments);
-  own_.labels.segments_land_one.Add(waiting.own_labels.segments_land_one);
+  own_.labels.single.Add(waiting.own_labels.single);
   waiting_[scan.utime_us] = std::move(waiting);
   if (waiting_.size() > kMaxWaiting) waiting_.erase(waiting_.begin());
 }
@@ -259,24 +207,11 @@ bool TrackRun::OnAlerts(const alerts_t& message) {
 
 void TrackRun::TakeTracks(const Waiting& waiting) {
   auto& tracks = own_.tracks[waiting.index];
-  std::set<int> land;
   for (const auto& part : waiting.parts) {
     for (const auto& track : part.tracks) tracks.push_back(ToTrackState(track));
-    land.insert(part.land_segment_ids.begin(), part.land_segment_ids.end());
   }
   if (waiting.own_labels.segments.count == 0) return;
-  const auto pieces = PieceLabelsOf(waiting.parts);
-  if (!pieces.of_piece.empty()) {
-    const auto by_piece = [&pieces](const LabelledReturn& one) {
-      const auto piece = static_cast<std::size_t>(one.piece);
-      const int label = piece < pieces.of_piece.size() ? pieces.of_piece[piece] : 0;
-      return label > 0 ? label : pieces.last + one.label;
-    };
-    AddTo(own_.labels.tracks_land_one, IouOf(waiting.returns, true, by_piece));
-    return;
-  }
-  const auto labels = LabelsOf(tracks, land);
-  AddTo(own_.labels.tracks_land_one, IouOf(waiting.returns, true, BySegment(labels)));
+  own_.labels.by_tracks.Add(FiguresOf(waiting.returns, TrackLabels(waiting.parts, TrackLabels::Land::kOne)));
 }
 
 std::vector<TrackRun::Row> TrackRun::Rows() const {

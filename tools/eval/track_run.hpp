@@ -16,7 +16,9 @@
 #include "common/messages/scan_collector.hpp"
 #include "lookout/alerts_t.hpp"
 #include "lookout/tracks_t.hpp"
+#include "tools/eval/label_figures.hpp"
 #include "tools/eval/multi_object_tracker.hpp"
+#include "tools/eval/track_labels.hpp"
 #include "tools/eval/track_metrics.hpp"
 #include "tools/eval/track_truth.hpp"
 
@@ -28,13 +30,15 @@ inline constexpr std::string_view kTracksChannel = "TRACKS";
 /// As a tracker states it, out of the message.
 TrackState ToTrackState(const track_t& track);
 
-/// IoU of labels, a mean over the objects of each scan, and of these the mean: land is one object, and one label, where it says so.
+/// Labels of returns against the truth. Land is one object, and one label, where SEGMENTS or the tracker say so; but where it is said that it is not.
 struct LabelScores {
-  bool has_structures = false;  // docks, piers, land
-  Mean segments;                // labels of SEGMENTS against the objects of the truth
-  Mean segments_land_one;       // land is one object, and segments that SEGMENTS call land have one label
-  Mean tracks_land_one;         // the same with the track of a piece as its label (of a tracker that says nothing of pieces: the track that explains
-                                // its segment), and of land what the tracker calls so; what no track explains keeps the label of its segment
+  Mean segments;           // IoU of labels of SEGMENTS, each object of land by itself: mean over the objects of a scan
+  LabelFigures single;     // labels of SEGMENTS; land_too_many: each object of land by itself, and all labels as they are
+  LabelFigures by_tracks;  // the track of a piece as its label (of a tracker that says nothing of pieces: the track that explains its segment), and
+                           // of land what the tracker calls so; what no track explains keeps the label of its segment
+
+  /// mIoU by tracks over that of single scans; NaN without either.
+  double Gain() const { return by_tracks.iou.value() - single.iou.value(); }
 };
 
 class TrackRun {
@@ -89,10 +93,10 @@ class TrackRun {
   bool OnAlerts(const alerts_t& message);
   void TakeTracks(const Waiting& waiting);
   std::vector<LabelledReturn> Join(const messages::ScanMessages& scan);
-  // Mean over the objects; nullopt without one.
-  std::optional<double> IouOf(const std::vector<LabelledReturn>& returns, bool is_land_one,
-                              const std::function<int(const LabelledReturn&)>& label_of) const;
-  static std::function<int(const LabelledReturn&)> BySegment(const std::map<int, int>& labels);
+  LabelFigures FiguresOf(const std::vector<LabelledReturn>& returns, bool is_land_one,
+                         const std::function<int(const LabelledReturn&)>& label_of) const;
+  // Land is one.
+  LabelFigures FiguresOf(const std::vector<LabelledReturn>& returns, const TrackLabels& labels) const;
 
   Truth& truth_;
   Returns used_returns_;

@@ -20,6 +20,7 @@ struct TrueThing {
   int num_returns = 0;                                     // in this scan
   bool is_in_water = false;                                // a boat, swimmer, buoy, marker
   bool is_land = false;                                    // IsLand; docks and piers are neither
+  bool is_buoy = false;                                    // by its kind
 };
 
 /// The own boat at the end of a scan.

@@ -195,16 +195,20 @@ void SimulateRun(const fs::path& config_folder, const fs::path& scene_file, std:
   while (const auto datagram = simulation.Next()) on_datagram({datagram->time, datagram->port, datagram->payload});
 }
 
-void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram) {
-  ReadOwnRows(files, boat, truth);
-  ReadObjectRows(files, truth);
-  ReadReturnRows(files, truth);
+void SendCapture(const CaptureWithTruth& files, const DatagramHandler& on_datagram) {
   const UnpackedCapture unpacked(files.capture);
   vlp16::CaptureReader reader(unpacked.path());
   while (const auto datagram = reader.Next()) {
     on_datagram({datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port}});
   }
   if (reader.num_damaged() > 0) throw std::runtime_error(files.capture.string() + ": damaged: " + reader.damage());
+}
+
+void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram) {
+  ReadOwnRows(files, boat, truth);
+  ReadObjectRows(files, truth);
+  ReadReturnRows(files, truth);
+  SendCapture(files, on_datagram);
 }
 
 TempFolder::TempFolder() {

@@ -25,6 +25,9 @@ void SimulateRun(const std::filesystem::path& config_folder, const std::filesyst
 /// Time by which a return of a capture and of its truth may differ.
 inline constexpr std::int64_t kCaptureToleranceUs = 3;
 
+/// The datagrams of a capture, without its truth. @throws std::runtime_error "file: reason"
+void SendCapture(const CaptureWithTruth& files, const DatagramHandler& on_datagram);
+
 /// Reads a capture, and NAME-SEED.objects.csv.xz, .shapes.csv.xz, .ego.csv.xz and .truth.csv.xz beside it.
 ///
 /// An object of the shapes has their outline, any other a rectangle of its length and width; between two scans, of whose middle the objects are, it

@@ -38,10 +38,9 @@ std::string BandOf(std::int64_t num_things) {
 
 void Add(TrackRun::Row& sum, const TrackRun::Row& row) {
   sum.scores.Add(row.scores);
-  sum.labels.has_structures = sum.labels.has_structures || row.labels.has_structures;
   sum.labels.segments.Add(row.labels.segments);
-  sum.labels.segments_land_one.Add(row.labels.segments_land_one);
-  sum.labels.tracks_land_one.Add(row.labels.tracks_land_one);
+  sum.labels.single.Add(row.labels.single);
+  sum.labels.by_tracks.Add(row.labels.by_tracks);
 }
 
 // A scene counts as one, however many scans it has.
@@ -50,30 +49,40 @@ void AddValue(Mean& sum, const Mean& of_scene) {
 }
 
 NamedTable Identities(const std::vector<TrackRow>& rows) {
-  Table table({"scene", "tracker", "runs", "minutes", "MOTA_%", "IDF1_%", "missed_%", "false_%", "switches_20s", "no_switch_%", "false_tracks_min",
-               "doubles_min", "GOSPA_m", "localisation_m", "missed_m", "false_m"});
+  Table table({"scene", "tracker", "runs", "minutes", "MOTA_%", "IDF1_%", "HOTA_%", "DetA_%", "AssA_%", "missed_%", "false_%", "switches_20s",
+               "no_switch_%", "false_tracks_h", "doubles_%", "ids_per_track"});
   for (const auto& [scene, row] : rows) {
     const auto& scores = row.scores;
-    const auto& gospa = scores.gospa;
     table.Add({scene, row.tracker, Number(scores.num_runs), Number(scores.seconds / 60.0, 2), Number(Percent(scores.Mota()), 1),
-               Number(Percent(scores.Idf1()), 1), Number(Percent(ShareOf(scores.num_missed, scores.num_expected)), 1),
+               Number(Percent(scores.Idf1()), 1), Number(Percent(scores.hota.Value()), 1), Number(Percent(scores.hota.Detection()), 1),
+               Number(Percent(scores.hota.Association()), 1), Number(Percent(ShareOf(scores.num_missed, scores.num_expected)), 1),
                Number(Percent(ShareOf(scores.num_false, scores.num_expected)), 1),
                Number(static_cast<double>(scores.num_switches) * kSecondsOfSwitches / scores.seconds, 2),
-               Number(Percent(ShareOf(scores.num_runs_without_switch, scores.num_runs)), 0), Number(scores.FalseTracksPerMinute(), 1),
-               Number(static_cast<double>(scores.num_double_tracks) * 60.0 / scores.seconds, 1), Number(gospa.Rms(), 2),
-               Number(gospa.LocalisationRms(), 2), Number(gospa.MissedRms(), 2), Number(gospa.FalseRms(), 2)});
+               Number(Percent(ShareOf(scores.num_runs_without_switch, scores.num_runs)), 0), Number(scores.FalseTracksPerHour(), 0),
+               Number(Percent(scores.has_double.value()), 2), Number(scores.IdsPerTrack(), 2)});
   }
   return {"tracks_identities", "tracks: who is who (things in the water with 5 returns or more)", std::move(table)};
 }
 
+NamedTable Distances(const std::vector<TrackRow>& rows) {
+  Table table({"scene", "tracker", "GOSPA_m", "localisation_m", "missed_m", "false_m", "T-GOSPA_m", "switching_m"});
+  for (const auto& [scene, row] : rows) {
+    const auto& gospa = row.scores.gospa;
+    const auto& trajectories = row.scores.trajectory_gospa;
+    table.Add({scene, row.tracker, Number(gospa.Rms(), 2), Number(gospa.LocalisationRms(), 2), Number(gospa.MissedRms(), 2),
+               Number(gospa.FalseRms(), 2), Number(trajectories.Rms(), 2), Number(trajectories.SwitchRms(), 2)});
+  }
+  return {"tracks_gospa", "tracks: distance to the truth (the same things)", std::move(table)};
+}
+
 NamedTable Times(const std::vector<TrackRow>& rows) {
   Table table({"scene", "tracker", "things_5+", "confirmed_median_s", "confirmed_95_s", "things_1-4", "confirmed_median_s", "confirmed_95_s",
-               "hidden", "found_again_%"});
+               "buoys_near", "in_2s_%", "hidden", "found_again_%"});
   for (const auto& [scene, row] : rows) {
     const auto& [many, few] = row.scores.confirmed_s;
     table.Add({scene, row.tracker, Count(many.count()), Percentile(many, 50, 2), Percentile(many, 95, 2), Count(few.count()), Percentile(few, 50, 2),
-               Percentile(few, 95, 2), Number(row.scores.num_hidden),
-               Number(Percent(ShareOf(row.scores.num_found_again, row.scores.num_hidden)), 0)});
+               Percentile(few, 95, 2), Number(row.scores.near_buoy_tracked.count), Number(Percent(row.scores.near_buoy_tracked.value()), 0),
+               Number(row.scores.num_hidden), Number(Percent(ShareOf(row.scores.num_found_again, row.scores.num_hidden)), 0)});
   }
   return {"tracks_times", "tracks: from the first return to the first track, and found again after 1 to 10 s", std::move(table)};
 }
@@ -111,16 +120,26 @@ NamedTable Approaches(const std::vector<TrackRow>& rows) {
   return {"tracks_approaches", "tracks: closest approach, and what was warned of", std::move(table)};
 }
 
+// A row for the labels of single scans, which are the same whoever tracks, then one for each tracker.
 NamedTable Labels(const std::vector<TrackRow>& rows) {
-  Table table({"scene", "tracker", "scans (all: scenes)", "segments_%", "segments_land_one_%", "tracks_land_one_%", "gain"});
+  Table table({"scene", "labels", "scans (all: scenes)", "land_apart_%", "mIoU_%", "gain", "land_%", "land_too_many", "lost_%", "PQ_%", "SQ_%",
+               "RQ_%", "OSE", "USE"});
+  const auto add = [&table](const std::string& scene, const std::string& labels, const LabelFigures& figures, const std::string& apart,
+                            const std::string& gain) {
+    table.Add({scene, labels, Number(figures.iou.count), apart, Number(Percent(figures.iou.value()), 1), gain,
+               Number(Percent(figures.land_iou.value()), 1), Number(figures.land_too_many.value(), 1), Number(Percent(figures.lost.value()), 1),
+               Number(Percent(figures.panoptic_quality.value()), 1), Number(Percent(figures.segmentation_quality.value()), 1),
+               Number(Percent(figures.recognition_quality.value()), 1), Number(figures.over_entropy.value(), 2),
+               Number(figures.under_entropy.value(), 2)});
+  };
+  std::string last_scene;
   for (const auto& [scene, row] : rows) {
-    const auto& labels = row.labels;
-    if (labels.segments.count == 0) continue;
-    table.Add({scene, row.tracker, Number(labels.segments.count), Number(Percent(labels.segments.value()), 1),
-               Number(Percent(labels.segments_land_one.value()), 1), Number(Percent(labels.tracks_land_one.value()), 1),
-               Number(Percent(labels.tracks_land_one.value() - labels.segments_land_one.value()), 1)});
+    if (row.labels.segments.count == 0) continue;
+    if (scene != last_scene) add(scene, "single scans", row.labels.single, Number(Percent(row.labels.segments.value()), 1), "-");
+    last_scene = scene;
+    add(scene, row.tracker, row.labels.by_tracks, "-", Number(Percent(row.labels.Gain()), 1));
   }
-  return {"tracks_labels", "labels of returns: mIoU of SEGMENTS and of TRACKS", std::move(table)};
+  return {"tracks_labels", "labels of returns: of single scans (SEGMENTS) and by tracks", std::move(table)};
 }
 
 }  // namespace
@@ -145,14 +164,14 @@ std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::stri
     if (same == all.end()) same = all.insert(all.end(), {name, {row.tracker, {}, {}}});
     same->row.scores.Add(row.scores);
     AddValue(same->row.labels.segments, row.labels.segments);
-    AddValue(same->row.labels.segments_land_one, row.labels.segments_land_one);
-    AddValue(same->row.labels.tracks_land_one, row.labels.tracks_land_one);
+    same->row.labels.single.AddValues(row.labels.single);
+    same->row.labels.by_tracks.AddValues(row.labels.by_tracks);
   }
   return all;
 }
 
 std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows) {
-  return {Identities(rows), Times(rows), States(rows), Approaches(rows), Labels(rows)};
+  return {Identities(rows), Distances(rows), Times(rows), States(rows), Approaches(rows), Labels(rows)};
 }
 
 void PrintTables(const std::vector<NamedTable>& tables, std::ostream& out) {

@@ -28,6 +28,7 @@ TrueThing TrackTruth::MakeThing(int id, const Polygon& outline_m) const {
   thing.position_m = CenterOf(outline_m);
   thing.is_in_water = objects_.at(id).is_in_water;
   thing.is_land = IsLand(objects_.at(id));
+  thing.is_buoy = objects_.at(id).kind == "buoy";
   return thing;
 }
 

@@ -68,7 +68,7 @@ TEST(LeaveOutMethod, UsesTheEvidenceOfTheScene) {
   LabelledScan scan;
   ForEachScan({{"lake"}, 1, 1, 0.4}, boat, nullptr, [&scan](const ScanPlace&, const LabelledScan& truth) { scan = truth; });
   const auto count = [&](const std::string& scene) {
-    method.BeginScene(scene);
+    method.BeginScan({scene, 1, 0});
     return method.Segment(scan.scan).is_sure.size();
   };
   const auto merged = count("harbour");

@@ -23,7 +23,7 @@ TEST(TrackMetrics, PerfectTracksScoreFull) {
   EXPECT_EQ(scores.num_switches, 0);
   EXPECT_EQ(scores.num_runs_without_switch, 1);
   EXPECT_DOUBLE_EQ(scores.seconds, 5.0);
-  EXPECT_DOUBLE_EQ(scores.FalseTracksPerMinute(), 0.0);
+  EXPECT_DOUBLE_EQ(scores.FalseTracksPerHour(), 0.0);
   EXPECT_DOUBLE_EQ(scores.gospa.Rms(), 0.0);
   EXPECT_DOUBLE_EQ(scores.position_nees.value(), 0.0);
   EXPECT_EQ(scores.num_standing, 1);
@@ -72,7 +72,8 @@ TEST(TrackMetrics, ASecondTrackOfAThingIsFalse) {
   const auto scores = run.Score();
   EXPECT_EQ(scores.num_false, 10);
   EXPECT_EQ(scores.num_false_tracks, 1);
-  EXPECT_DOUBLE_EQ(scores.FalseTracksPerMinute(), 60.0);
+  EXPECT_DOUBLE_EQ(scores.FalseTracksPerHour(), 3600.0);
+  EXPECT_DOUBLE_EQ(scores.has_double.value(), 1.0);
   EXPECT_DOUBLE_EQ(scores.Mota(), 0.0);
 }
 
@@ -251,6 +252,65 @@ TEST(TrackMetrics, AFalseTrackIsOneOnNothingOrADouble) {
   EXPECT_DOUBLE_EQ(scores.events[1].nearest_gap_m, 28.0);
 }
 
+TEST(TrackMetrics, DoublesAreCountedByScans) {
+  Case run;
+  for (int n = 0; n < 10; ++n) {
+    std::vector<TrackState> tracks{TrackAt(1, {0.0, 0.0})};
+    if (n < 3) tracks.push_back(TrackAt(2, {1.0, 0.0}));
+    if (n < 5) tracks.push_back(TrackAt(3, {30.0, 0.0}));  // false, and no double
+    run.Add({ThingAt(1, {0.0, 0.0})}, tracks);
+  }
+  EXPECT_DOUBLE_EQ(run.Score().has_double.value(), 0.3);
+}
+
+TEST(TrackMetrics, NumbersThatNobodySawAreWasted) {
+  Case run;
+  auto tentative = TrackAt(11, {50.0, 0.0});
+  tentative.status = TrackStatus::kTentative;
+  run.Add({ThingAt(1, {0.0, 0.0})}, {TrackAt(2, {0.0, 0.0}), TrackAt(6, {30.0, 0.0}), tentative});
+  EXPECT_DOUBLE_EQ(run.Score().IdsPerTrack(), 3.0);
+  auto both = run.Score();
+  Case other;
+  other.Add({}, {TrackAt(2, {0.0, 0.0}), TrackAt(1, {30.0, 0.0})});
+  both.Add(other.Score());
+  EXPECT_DOUBLE_EQ(both.IdsPerTrack(), 2.0);
+  EXPECT_TRUE(std::isnan(Case{}.Score().IdsPerTrack()));
+}
+
+TEST(TrackMetrics, TrajectoriesAreThoseOfTheThingsThatMustBeTracked) {
+  Case run;
+  for (int n = 0; n < 10; ++n) {
+    run.Add({ThingAt(1, {0.0, 0.0}), ThingAt(2, {50.0, 0.0}, 2)}, {TrackAt(n < 5 ? 1 : 2, {0.6, 0.8}), TrackAt(3, {50.0, 0.0})});
+  }
+  const auto scores = run.Score();
+  EXPECT_DOUBLE_EQ(scores.trajectory_gospa.num_switches, 1.0);
+  EXPECT_EQ(scores.trajectory_gospa.scans.num_false, 0);
+  EXPECT_DOUBLE_EQ(scores.trajectory_gospa.scans.LocalisationRms(), 1.0);
+}
+
+// A buoy that the boat comes near to at 2 m/s: it is within 25 m from scan 15 on (its outline reaches 1 m towards the boat).
+TrackScores ScoreOfBuoy(int tracked_from, int num_returns, int num_scans = kNumScans) {
+  Case run;
+  for (int n = 0; n < num_scans; ++n) {
+    auto buoy = ThingAt(1, {29.0 - 0.2 * n, 0.0}, num_returns);
+    buoy.is_buoy = true;
+    std::vector<TrackState> tracks;
+    if (n >= tracked_from) tracks.push_back(TrackAt(1, buoy.position_m));
+    run.Add({buoy}, tracks);
+    run.truth.back().own = TrueBoat{SquareAt({0.0, 0.0}), {0.0, 0.0}};
+  }
+  return run.Score();
+}
+
+TEST(TrackMetrics, ABuoyThatComesNearIsTrackedInTimeOrNot) {
+  EXPECT_DOUBLE_EQ(ScoreOfBuoy(0, 2).near_buoy_tracked.value(), 1.0);
+  EXPECT_DOUBLE_EQ(ScoreOfBuoy(35, 2).near_buoy_tracked.value(), 1.0);
+  EXPECT_DOUBLE_EQ(ScoreOfBuoy(37, 2).near_buoy_tracked.value(), 0.0);
+  EXPECT_EQ(ScoreOfBuoy(kNumScans, 0).near_buoy_tracked.count, 0) << "not a return in that time";
+  EXPECT_EQ(ScoreOfBuoy(kNumScans, 2, 30).near_buoy_tracked.count, 0) << "the run ends before";
+  EXPECT_EQ(ScoreOfBuoy(kNumScans, 2, 10).near_buoy_tracked.count, 0) << "it never comes near";
+}
+
 // The own boat passes a moored one of 8 m x 2 m: one side of it, then its end, then the other side.
 TEST(TrackMetrics, TheCentreCountsWhileNoMoreThanHalfWasSeen) {
   Case run;
@@ -316,7 +376,10 @@ TEST(TrackMetrics, RunsAddUp) {
   EXPECT_DOUBLE_EQ(twice.Mota(), run.Score().Mota());
   EXPECT_DOUBLE_EQ(twice.Idf1(), run.Score().Idf1());
   EXPECT_DOUBLE_EQ(twice.gospa.Rms(), run.Score().gospa.Rms());
-  EXPECT_DOUBLE_EQ(twice.FalseTracksPerMinute(), run.Score().FalseTracksPerMinute());
+  EXPECT_DOUBLE_EQ(twice.FalseTracksPerHour(), run.Score().FalseTracksPerHour());
+  EXPECT_DOUBLE_EQ(twice.hota.Value(), run.Score().hota.Value());
+  EXPECT_DOUBLE_EQ(twice.trajectory_gospa.Rms(), run.Score().trajectory_gospa.Rms());
+  EXPECT_DOUBLE_EQ(twice.IdsPerTrack(), run.Score().IdsPerTrack());
   EXPECT_EQ(twice.num_runs, 2);
 }
 
