@@ -145,7 +145,7 @@ Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const
   const double width = most.y() - least.y();
   const double depth = std::max(most.x() - least.x(), std::clamp(width, kLeastDepthM, kGreatestAssumedDepthM));
   const Eigen::Vector2d middle = (least.x() + 0.5 * depth) * sight + 0.5 * (least.y() + most.y()) * across;
-  standing_ = middle;
+  standing_ = first_m_ = middle;
   for (std::size_t i = 0; i < kDirections; ++i) {
     const double seen_reach = measured.reach_m[i] - directions[i].dot(middle);
     if (measured.kind[i] == Measured::Kind::kEdge) {
@@ -360,6 +360,7 @@ void Body::Loosen(double variance_m2) {
 
 void Body::Translate(const Eigen::Vector2d& by_m) {
   standing_ += by_m;
+  first_m_ += by_m;
   moving_.head<2>() += by_m;
   for (auto& measured : last_measured_) measured += by_m;
 }
@@ -412,6 +413,8 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   }
   Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
   other.MoveAs(*this, jump_mps);
+  other.first_m_ = first_m_;
+  other.centered_m_ = other.position_m() - Frame().translation();
   *this = other;
 }
 

@@ -1,7 +1,7 @@
 // How one thing moves, and how far it reaches: two motion hypotheses over one outline.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <optional>
 #include <vector>
@@ -50,6 +50,10 @@ class Body {
   /// All of it, at the predicted position.
   std::vector<Eigen::Vector2d> Outline() const;
   double SeenShare() const;
+  /// Where what is fixed to the thing is on the map: it moves and turns with it, also where the middle of what is known of it does not.
+  Eigen::Isometry2d Frame() const;
+  /// By how much that has moved since it was seen first.
+  double moved_m() const { return (Frame().translation() - first_m_).norm(); }
 
   /// All positions may have moved together by so much: the own position became better known.
   void Loosen(double variance_m2);
@@ -100,6 +104,8 @@ class Body {
 
   std::array<Side, kDirections> sides_;
   Eigen::Matrix2d turned_ = Eigen::Matrix2d::Identity();  // of the sides' directions, from those of the compass: a boat that turns takes them along
+  Eigen::Vector2d first_m_ = Eigen::Vector2d::Zero();     // the position at first
+  Eigen::Vector2d centered_m_ = Eigen::Vector2d::Zero();  // of the position, by Center() since the beginning, in the thing's own frame
   Eigen::Vector2d standing_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d standing_m2_ = Eigen::Matrix2d::Zero();
   Motion moving_ = Motion::Zero();

@@ -37,6 +37,7 @@ void Body::Center() {
   for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m -= directions[i].dot(middle);
   standing_ += middle;
   moving_.head<2>() += middle;
+  centered_m_ += turned_.transpose() * middle;
   for (auto& measured : last_measured_) measured += middle;
 }
 
@@ -103,6 +104,13 @@ std::vector<Eigen::Vector2d> Body::Outline() const {
   const Eigen::Vector2d position = position_m();
   for (auto& corner : corners) corner = turned_ * corner + position;
   return corners;
+}
+
+Eigen::Isometry2d Body::Frame() const {
+  Eigen::Isometry2d frame = Eigen::Isometry2d::Identity();
+  frame.linear() = turned_;
+  frame.translation() = position_m() - turned_ * centered_m_;
+  return frame;
 }
 
 double Body::SeenShare() const { return static_cast<double>(std::ranges::count_if(sides_, &Side::is_seen)) / static_cast<double>(kDirections); }

@@ -50,7 +50,6 @@ struct Followed {
   double beams_open = 2.0;
   double top_m = 0.0;
   double sum_returns = 0.0;
-  double land_votes = 0.0;
   int num_moving = 0;                                 // scans in which it moved for sure
   Eigen::Vector2d first_m = Eigen::Vector2d::Zero();  // middle, when it was seen first
   int num_misfits = 0;                                // scans in a row whose outline was another
@@ -58,6 +57,8 @@ struct Followed {
   std::vector<std::int32_t> segment_ids;
   std::vector<std::pair<std::int64_t, Utime>> parents;
   std::vector<std::pair<std::int64_t, Utime>> children;
+  std::int64_t frame = 0;  // of the ledger: 0 the earth, above 0 its own, since it moves
+  double stood_s = 0.0;    // since it moved last
   bool is_confirmed = false;
   bool is_ended = false;
   bool is_proven = false;  // it left a place where land had been thought: no land

@@ -248,6 +248,23 @@ Rectangle RectangleAround(std::span<const Eigen::Vector2d> polygon) {
 }
 
 // As by SidesOf, without keeping them: most points lie outside of the rectangle already.
+std::vector<Eigen::Vector2d> HullOf(std::vector<Eigen::Vector2d> places_m) {
+  std::ranges::sort(places_m, [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+  places_m.erase(std::unique(places_m.begin(), places_m.end()), places_m.end());
+  if (places_m.size() < 3) return places_m;
+  // Andrew's monotone chain: the lower side from west to east, then the upper one back.
+  std::vector<Eigen::Vector2d> hull_m;
+  const auto add = [&hull_m](const Eigen::Vector2d& place_m, std::size_t least) {
+    while (hull_m.size() > least && Cross(hull_m.back() - hull_m[hull_m.size() - 2], place_m - hull_m.back()) <= 0.0) hull_m.pop_back();
+    hull_m.push_back(place_m);
+  };
+  for (const auto& place_m : places_m) add(place_m, 1);
+  const std::size_t lower = hull_m.size();
+  for (auto place = std::next(places_m.rbegin()); place != places_m.rend(); ++place) add(*place, lower);
+  hull_m.pop_back();
+  return hull_m;
+}
+
 bool Contains(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point_m) {
   bool is_west_of_one = false;
   bool is_east_of_one = false;

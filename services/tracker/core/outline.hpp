@@ -44,6 +44,9 @@ struct Rectangle {
 /// @param polygon  at least one corner
 Rectangle RectangleAround(std::span<const Eigen::Vector2d> polygon);
 
+/// Convex hull. @param places_m  at least one, in any order
+std::vector<Eigen::Vector2d> HullOf(std::vector<Eigen::Vector2d> places_m);
+
 bool Contains(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point_m);
 
 /// All differences of a point of the first and one of the second (Minkowski): one polygon, of at most as many corners as both have. It contains the

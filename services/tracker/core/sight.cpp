@@ -223,6 +223,7 @@ std::vector<Sight::Return> Sight::Returns() const {
   std::vector<Return> returns;
   if (sweep_ == nullptr || sweep_->label.empty()) return returns;
   const std::size_t num_rings = ring_.size();
+  const auto& pieces = sweep_->piece.empty() ? sweep_->label : sweep_->piece;
   for (std::size_t column = 0; column < column_.size(); ++column) {
     const Eigen::Isometry3d pose = PoseAt(static_cast<int>(column));
     for (std::size_t ring = 0; ring < num_rings; ++ring) {
@@ -231,7 +232,7 @@ std::vector<Sight::Return> Sight::Returns() const {
       const double range_m = sweep_->range_m[cell];
       const Eigen::Vector3d place = pose * Eigen::Vector3d(range_m * ring_[ring].x() * column_[column].x(),
                                                            -range_m * ring_[ring].x() * column_[column].y(), range_m * ring_[ring].y());
-      returns.push_back({place.head<2>(), place.z(), sweep_->label[cell]});
+      returns.push_back({place.head<2>(), place.z(), sweep_->label[cell], pieces[cell]});
     }
   }
   return returns;

@@ -44,6 +44,7 @@ class Sight {
     Eigen::Vector2d place_m;
     double height_m;  // over the water
     std::int16_t label;
+    std::int16_t piece;
   };
   std::vector<Return> Returns() const;
 

@@ -27,6 +27,7 @@ constexpr double kLongestScanS = 0.2;
 constexpr double kMostOff = 16.0;
 constexpr double kMostMisfit = 9.0;
 constexpr int kMisfitsToRestart = 3;
+constexpr double kMovesProbability = 0.95;
 
 double RadiusOf(const std::vector<Eigen::Vector2d>& outline_m, const Eigen::Vector2d& middle_m) {
   double radius = 0.0;
@@ -53,6 +54,7 @@ void Step::Run() {
   is_sight_known_ = known_.sight.Begin(scan_);
   known_.had_sight = known_.had_sight || is_sight_known_;
   if (!scan_.own) return;
+  sightings_ = SightingsOf(scan_, known_.sight, known_.tracks, known_.ledger);
   FindPlaces();
   LeaveOutdated();
   Settle();
@@ -72,6 +74,30 @@ void Step::Run() {
   FeedLand();
   EndLand();
   Merge();
+  Label();
+}
+
+// From what was seen to the segments and pieces that it is made of.
+void Step::Label() {
+  std::vector<std::int64_t> track_of(sightings_.seen.size(), kNoTrack);
+  for (const std::int32_t number : land_ids_) track_of[static_cast<std::size_t>(number - 1)] = 0;
+  for (auto& track : known_.tracks) {
+    for (const std::int32_t number : track.segment_ids) track_of[static_cast<std::size_t>(number - 1)] = track.id;
+    track.segment_ids.clear();
+  }
+  const auto of = [&track_of](std::int32_t seen) { return seen < 0 ? kNoTrack : track_of[static_cast<std::size_t>(seen)]; };
+  for (const std::int32_t seen : sightings_.of_piece) track_of_piece_.push_back(of(seen));
+  land_ids_.clear();
+  std::map<std::int64_t, std::vector<std::int32_t>> segments_of;
+  for (std::size_t i = 0; i < sightings_.of_segment.size(); ++i) {
+    const std::int64_t id = of(sightings_.of_segment[i]);
+    const auto segment = static_cast<std::int32_t>(i) + 1;
+    if (id == 0) land_ids_.push_back(segment);
+    if (id > 0) segments_of[id].push_back(segment);
+  }
+  for (auto& track : known_.tracks) {
+    if (const auto found = segments_of.find(track.id); found != segments_of.end()) track.segment_ids = std::move(found->second);
+  }
 }
 
 Eigen::Vector2d Step::ToVessel(const Eigen::Vector2d& place_m) const {
@@ -99,31 +125,16 @@ void Step::Place(Followed& track) {
 }
 
 void Step::FindPlaces() {
-  use_.assign(scan_.seen.size(), Use::kFree);
+  use_.assign(sightings_.seen.size(), Use::kFree);
   middle_m_.clear();
   radius_m_.clear();
-  for (const auto& seen : scan_.seen) {
+  for (const auto& seen : sightings_.seen) {
     middle_m_.push_back(MiddleOf(seen.outline_m));
     radius_m_.push_back(RadiusOf(seen.outline_m, middle_m_.back()));
   }
-  sides_.assign(scan_.seen.size(), std::nullopt);
+  sides_.assign(sightings_.seen.size(), std::nullopt);
   ranges_m_.clear();
   for (const auto& middle_m : middle_m_) ranges_m_.push_back((middle_m - known_.sight.from_m()).norm());
-  places_m_.assign(scan_.seen.size(), {});
-  std::map<std::int32_t, std::size_t> index_of;
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) index_of[scan_.seen[i].segment_id] = i;
-  heights_m_.assign(scan_.seen.size(), {});
-  for (const auto& one : known_.sight.Returns()) {
-    const auto found = index_of.find(one.label);
-    if (found == index_of.end()) continue;
-    places_m_[found->second].push_back(one.place_m);
-    heights_m_[found->second].push_back(one.height_m);
-  }
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    const auto& seen = scan_.seen[i];
-    if (!places_m_[i].empty()) continue;
-    places_m_[i] = seen.waterline_m.empty() ? seen.outline_m : seen.waterline_m;
-  }
 }
 
 void Step::Look() {
@@ -148,7 +159,7 @@ void Step::Look() {
 double Step::CostOf(const Followed& track, std::size_t i) const {
   constexpr double kWidestGateM = 12.5;  // of what follows; most pairs are farther apart
   if ((middle_m_[i] - track.middle_m).norm() > kWidestGateM + track.radius_m + radius_m_[i]) return kMostCost;
-  const auto& seen = scan_.seen[i];
+  const auto& seen = sightings_.seen[i];
   const Eigen::Matrix4d covariance = track.body->covariance();
   const double sd = std::min(3.0, std::sqrt(std::max(covariance(0, 0), covariance(1, 1))));
   const double noise = std::sqrt(0.5 * seen.covariance_relative_m2.trace());
@@ -167,8 +178,8 @@ double Step::CostOf(const Followed& track, std::size_t i) const {
 // Computed once for a segment, where it is asked for.
 const Sides& Step::SidesOf(std::size_t i) const {
   if (!sides_[i]) {
-    sides_[i] = known_.sight.SidesOf(scan_.seen[i].outline_m, scan_.seen[i].top_above_water_m);
-    sides_[i]->before_s = std::clamp(ToSeconds(scan_.end_time - scan_.seen[i].time), 0.0, kLongestScanS);
+    sides_[i] = known_.sight.SidesOf(sightings_.seen[i].outline_m, sightings_.seen[i].top_above_water_m);
+    sides_[i]->before_s = std::clamp(ToSeconds(scan_.end_time - sightings_.seen[i].time), 0.0, kLongestScanS);
   }
   return *sides_[i];
 }
@@ -180,7 +191,7 @@ void Step::AssignBodies() {
   }
   std::vector<Candidate> candidates;
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
       // Land takes no part, unless it is the very thing that was seen there before.
       const bool may_be = use_[i] == Use::kFree || (use_[i] == Use::kLand && known_.tracks[rows[row]].is_confirmed &&
                                                     radius_m_[i] < 2.0 * known_.tracks[rows[row]].radius_m + 1.0);
@@ -189,7 +200,7 @@ void Step::AssignBodies() {
       if (cost < kMostCost) candidates.push_back({static_cast<std::int32_t>(row), static_cast<std::int32_t>(i), cost});
     }
   }
-  const auto column_of = Assign(static_cast<std::int32_t>(rows.size()), static_cast<std::int32_t>(scan_.seen.size()), candidates, kMostCost);
+  const auto column_of = Assign(static_cast<std::int32_t>(rows.size()), static_cast<std::int32_t>(sightings_.seen.size()), candidates, kMostCost);
   for (const auto column : column_of) {
     if (column >= 0 && use_[static_cast<std::size_t>(column)] == Use::kFree) use_[static_cast<std::size_t>(column)] = Use::kAssigned;
   }
@@ -203,22 +214,23 @@ void Step::HitWhole(Followed& track, std::size_t i) {
   std::vector<std::size_t> others;
   const auto around = RectangleAround(track.outline_m);
   if (track.is_confirmed && use_[i] == Use::kAssigned && around.width_m < kWidestBoatM && around.length_m < kLongestWholeM) {
-    for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
-      if (use_[k] != Use::kFree || scan_.seen[k].thing_probability < 0.5 || (middle_m_[k] - track.middle_m).norm() > track.radius_m + kPieceBesideM)
+    for (std::size_t k = 0; k < sightings_.seen.size(); ++k) {
+      if (use_[k] != Use::kFree || sightings_.seen[k].thing_probability < 0.5 ||
+          (middle_m_[k] - track.middle_m).norm() > track.radius_m + kPieceBesideM)
         continue;
-      if (std::ranges::all_of(scan_.seen[k].outline_m, [&](const auto& corner) {
+      if (std::ranges::all_of(sightings_.seen[k].outline_m, [&](const auto& corner) {
             return Contains(track.outline_m, corner) || GapOf(track.outline_m, std::array{corner}).distance_m < kPieceBesideM;
           }))
         others.push_back(k);
     }
   }
   if (others.empty()) {
-    Hit(track, i, scan_.seen[i], SidesOf(i));
+    Hit(track, i, sightings_.seen[i], SidesOf(i));
     return;
   }
-  Seen whole = scan_.seen[i];
+  Seen whole = sightings_.seen[i];
   for (const auto k : others) {
-    const auto& piece = scan_.seen[k];
+    const auto& piece = sightings_.seen[k];
     use_[k] = Use::kTaken;
     whole.outline_m.insert(whole.outline_m.end(), piece.outline_m.begin(), piece.outline_m.end());
     whole.num_returns += piece.num_returns;
@@ -256,26 +268,26 @@ void Step::AssignLost() {
       continue;
     const double reach_m = std::min(kMostReachM, kLostReachM + kFasterMps * track.UnseenS(scan_.end_time));
     const double area_m2 = std::max(0.1, AreaOf(track.outline_m));
-    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-      if (use_[i] != Use::kFree || !scan_.seen[i].is_sure) continue;
+    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
+      if (use_[i] != Use::kFree || !sightings_.seen[i].is_sure) continue;
       if ((middle_m_[i] - track.middle_m).norm() > reach_m + track.radius_m + radius_m_[i]) continue;
-      const double times = std::max(0.1, AreaOf(scan_.seen[i].outline_m)) / area_m2;
+      const double times = std::max(0.1, AreaOf(sightings_.seen[i].outline_m)) / area_m2;
       if (times > kMostTimesLarger || times < 1.0 / kMostTimesLarger) continue;
-      const double gap_m = GapOf(track.outline_m, scan_.seen[i].outline_m).distance_m;
+      const double gap_m = GapOf(track.outline_m, sightings_.seen[i].outline_m).distance_m;
       if (gap_m < reach_m) pairs.push_back({gap_m, t, i});
     }
   }
   TakeNearest(pairs, [&](const Near& pair) {
     auto& track = known_.tracks[pair.track];
     track.num_misfits = kMisfitsToRestart;
-    Hit(track, pair.seen, scan_.seen[pair.seen], SidesOf(pair.seen), true);
+    Hit(track, pair.seen, sightings_.seen[pair.seen], SidesOf(pair.seen), true);
   });
 }
 
 // What is not yet likely takes the nearest of the rest.
 void Step::AssignRest() {
   std::vector<std::size_t> by_east;
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
     if (use_[i] == Use::kFree) by_east.push_back(i);
   }
   const auto east = [this](std::size_t i) { return middle_m_[i].x(); };
@@ -294,7 +306,7 @@ void Step::AssignRest() {
     }
   }
   TakeNearest(pairs, [&](const Near& pair) {
-    Hit(known_.tracks[pair.track], pair.seen, scan_.seen[pair.seen], SidesOf(pair.seen));
+    Hit(known_.tracks[pair.track], pair.seen, sightings_.seen[pair.seen], SidesOf(pair.seen));
     known_.clutter.Add(ToVessel(middle_m_[pair.seen]));
   });
 }
@@ -303,8 +315,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const bool was_land = use_[i] == Use::kLand;
   use_[i] = Use::kTaken;
   track.is_seen_now = true;
-  VoteLand(track, was_land);
-  if (was_land) land_ids_kept_.push_back(seen.segment_id);
+  if (track.body && track.body->IsMoving(kMovesProbability)) ++track.num_moving;
   const Eigen::Vector2d before_m = track.middle_m;
   const double range_m = ranges_m_[i];
   if (track.body) {
@@ -350,6 +361,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   track.relative_covariance_m2 = seen.covariance_relative_m2;
   track.segment_ids.push_back(seen.segment_id);
   Remember(track, true);
+  ChooseFrame(track);
   if (is_sight_known_) {
     const auto look = known_.sight.At(seen.outline_m, seen.top_above_water_m);
     constexpr double kForgotten = 0.95;
@@ -366,6 +378,20 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const bool is_perhaps_crest = track.mean_thing < kCrestThing && ToSeconds(scan_.end_time - track.first) < kCrestS;
   if (!track.is_confirmed && !is_perhaps_crest && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i))
     track.is_confirmed = true;
+}
+
+// What moves is remembered in a frame of its own, until it has stood for a while.
+void Step::ChooseFrame(Followed& track) {
+  constexpr double kStandsForS = 2.0;
+  constexpr double kMovedM = 1.5;
+  if (!track.body || !track.is_confirmed) return;
+  if (!track.body->IsMoving(kMovesProbability)) {
+    track.stood_s += dt_s_;
+    if (track.stood_s > kStandsForS) track.frame = 0;
+    return;
+  }
+  track.stood_s = 0.0;
+  if (track.frame == 0 && track.body->moved_m() > kMovedM) track.frame = ++known_.last_frame;
 }
 
 void Step::Remember(Followed& track, bool is_seen) {
@@ -388,20 +414,21 @@ void Step::Miss(Followed& track) {
 void Step::FindInside() {
   for (auto& track : known_.tracks) {
     if (track.is_seen_now || !track.body) continue;
-    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
       if (use_[i] == Use::kFree || use_[i] == Use::kLeftOut) continue;
       if ((middle_m_[i] - track.middle_m).norm() > radius_m_[i] + track.radius_m) continue;
-      const auto both = Intersection(scan_.seen[i].outline_m, track.outline_m);
+      const auto both = Intersection(sightings_.seen[i].outline_m, track.outline_m);
       const double area = std::max(0.05, AreaOf(track.outline_m));
       if (both.empty() || AreaOf(both) < 0.5 * area) continue;
       // Something of what was seen must lie in it.
-      if (!track.is_met && std::ranges::none_of(places_m_[i], [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); }))
+      if (!track.is_met &&
+          std::ranges::none_of(sightings_.places_m[i], [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); }))
         continue;
       track.is_inside_now = true;
       track.seen = scan_.end_time;
       track.inside_of = 0;
       for (const auto& other : known_.tracks) {
-        if (other.is_seen_now && std::ranges::find(other.segment_ids, scan_.seen[i].segment_id) != other.segment_ids.end())
+        if (other.is_seen_now && std::ranges::find(other.segment_ids, sightings_.seen[i].segment_id) != other.segment_ids.end())
           track.inside_of = other.id;
       }
       if (track.inside_of == 0) track.body->Fade(dt_s_);
@@ -415,13 +442,13 @@ bool Step::IsClear(std::size_t i) const {
   constexpr int kLeastReturns = 20;
   constexpr double kLeastThing = 0.98;
   constexpr double kAloneM = 5.0;
-  const auto& seen = scan_.seen[i];
+  const auto& seen = sightings_.seen[i];
   if (seen.num_returns < kLeastReturns || seen.thing_probability < kLeastThing) return false;
   const auto is_near = [&](const Eigen::Vector2d& other_m, double radius_m) {
     return (other_m - middle_m_[i]).norm() < kAloneM + radius_m + radius_m_[i];
   };
-  for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
-    if (k != i && scan_.seen[k].is_sure && !scan_.seen[k].is_land && is_near(middle_m_[k], radius_m_[k])) return false;
+  for (std::size_t k = 0; k < sightings_.seen.size(); ++k) {
+    if (k != i && sightings_.seen[k].is_sure && !sightings_.seen[k].is_land && is_near(middle_m_[k], radius_m_[k])) return false;
   }
   return std::ranges::none_of(known_.tracks, [&](const Followed& other) { return other.body && is_near(other.middle_m, other.radius_m); });
 }
@@ -433,12 +460,12 @@ void Step::Begin() {
   }
   // Where there are too many, what is sure comes first.
   std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
     if (use_[i] == Use::kFree) order.push_back(i);
   }
-  std::stable_partition(order.begin(), order.end(), [this](std::size_t i) { return scan_.seen[i].is_sure; });
+  std::stable_partition(order.begin(), order.end(), [this](std::size_t i) { return sightings_.seen[i].is_sure; });
   for (const std::size_t i : order) {
-    const auto& seen = scan_.seen[i];
+    const auto& seen = sightings_.seen[i];
     known_.clutter.Add(ToVessel(middle_m_[i]));
     if (known_.tracks.size() >= kMostTracks) {
       ++known_.num_over_limit;

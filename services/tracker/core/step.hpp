@@ -14,6 +14,7 @@
 #include "services/tracker/core/land.hpp"
 #include "services/tracker/core/land_pieces.hpp"
 #include "services/tracker/core/sight.hpp"
+#include "services/tracker/core/sightings.hpp"
 #include "services/tracker/core/tracker.hpp"
 
 namespace lookout::tracker {
@@ -29,6 +30,8 @@ using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower 
 /// What is known between scans.
 struct Known {
   Sight sight;
+  Ledger ledger = {};
+  std::int64_t last_frame = 0;
   LandMemory land = {};
   LandPieces land_pieces = {};
   ClutterMap clutter = {};
@@ -48,6 +51,8 @@ class Step {
 
   void Run();
 
+  /// As Picture has it.
+  const std::vector<std::int64_t>& track_of_piece() const { return track_of_piece_; }
   bool is_sight_known() const { return is_sight_known_; }
   const std::vector<std::int32_t>& land_ids() const { return land_ids_; }
   const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
@@ -65,7 +70,6 @@ class Step {
   void FindPlaces();
   void FindLand();
   void FollowLandPieces();
-  static void VoteLand(Followed& track, bool was_land);
   bool IsLand(const Followed& track) const;
   bool IsPerhapsLand(const Followed& track, std::size_t i) const;
   void Look();
@@ -81,6 +85,7 @@ class Step {
   void AssignRest();
   void HitWhole(Followed& track, std::size_t i);
   void Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides, bool is_lost = false);
+  void ChooseFrame(Followed& track);
   static void Remember(Followed& track, bool is_seen);
   void Miss(Followed& track);
   void FindInside();
@@ -89,6 +94,7 @@ class Step {
   void FeedLand();
   void EndLand();
   void Merge();
+  void Label();
   bool Touch(const Followed& one, const Followed& other) const;
   bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const;
   bool IsSuspect(const Followed& track) const;
@@ -104,17 +110,16 @@ class Step {
   bool is_sight_known_ = false;
   bool has_left_out_ = false;  // segments, since they are outdated
   Eigen::Vector2d common_step_m_ = Eigen::Vector2d::Zero();
-  std::vector<Use> use_;                                // [seen]
-  std::vector<Eigen::Vector2d> middle_m_;               // [seen]
-  std::vector<double> radius_m_;                        // [seen]
-  mutable std::vector<std::optional<Sides>> sides_;     // [seen]
-  std::vector<double> ranges_m_;                        // [seen] from the lidar
-  std::vector<double> land_share_;                      // [seen]
-  std::vector<std::vector<Eigen::Vector2d>> places_m_;  // [seen] returns, or corners
-  std::vector<std::vector<double>> heights_m_;          // [seen] of the returns, over the water; empty where these are not known
-  std::vector<bool> seems_moving_;                      // [seen] land that may be none: it is not remembered
+  Sightings sightings_;
+  std::vector<std::int64_t> track_of_piece_;
+  std::vector<Use> use_;                             // [seen]
+  std::vector<Eigen::Vector2d> middle_m_;            // [seen]
+  std::vector<double> radius_m_;                     // [seen]
+  mutable std::vector<std::optional<Sides>> sides_;  // [seen]
+  std::vector<double> ranges_m_;                     // [seen] from the lidar
+  std::vector<double> land_share_;                   // [seen]
+  std::vector<bool> seems_moving_;                   // [seen] land that may be none: it is not remembered
   std::vector<std::int32_t> land_ids_;
-  std::vector<std::int32_t> land_ids_kept_;
   std::vector<std::pair<std::int64_t, std::int64_t>> merged_;
 };
 

@@ -10,14 +10,8 @@ namespace {
 constexpr double kLandShare = 0.6;           // of a segment's returns, where land is remembered
 constexpr std::size_t kMostLandPlaces = 40;  // of a segment that are asked for
 constexpr std::size_t kMostFed = 400;        // of a segment that are remembered, a scan
-constexpr double kLandVotes = 0.6;
-constexpr double kLandVoteGain = 0.1;        // the last second counts of what is hardly known,
-constexpr double kLandVoteGainKnown = 0.03;  // and the last 3 s of what has long been
-constexpr double kKnownHits = 100.0;
-constexpr int kLeastVotes = 5;
-constexpr double kMovesProbability = 0.95;
-constexpr int kMovesFor = 20;      // scans, and
-constexpr double kMovedByM = 2.0;  // since it was seen first: what went so far is no land
+constexpr int kMovesFor = 20;                // scans, and
+constexpr double kMovedByM = 2.0;            // since it was seen first: what went so far is no land
 constexpr std::size_t kLeastPieceReturns = 8;
 constexpr double kPieceExistence = 6.0;  // log odds
 constexpr double kPieceThing = 0.9;
@@ -29,8 +23,7 @@ bool HasMoved(const Followed& track) {
 // As a thing: what comes and goes is what a bank or a pier is cut into.
 bool IsKnown(const Followed& track) {
   constexpr int kKnownScans = 8;
-  constexpr double kMostLandVotes = 0.3;
-  return track.is_confirmed && (HasMoved(track) || (track.num_hits >= kKnownScans && track.land_votes < kMostLandVotes));
+  return track.is_confirmed && (HasMoved(track) || track.num_hits >= kKnownScans);
 }
 
 }  // namespace
@@ -38,38 +31,39 @@ bool IsKnown(const Followed& track) {
 // What the segmenter calls land, and what lies where land is remembered; but nothing that has been seen to move.
 void Step::FindLand() {
   land_share_.clear();
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    const auto& seen = scan_.seen[i];
-    land_share_.push_back(known_.land.Share(places_m_[i], kMostLandPlaces));
+  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
+    const auto& seen = sightings_.seen[i];
+    land_share_.push_back(known_.land.Share(sightings_.places_m[i], kMostLandPlaces));
     if (use_[i] == Use::kLeftOut) continue;
     if ((seen.is_land && seen.is_sure) || land_share_.back() >= kLandShare) use_[i] = Use::kLand;
   }
   FollowLandPieces();
   for (const auto& track : known_.tracks) {
     if (!track.is_confirmed || !track.body || !HasMoved(track)) continue;
-    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
       if (use_[i] != Use::kLand || radius_m_[i] > 2.0 * track.radius_m + 1.0) continue;
       if ((middle_m_[i] - track.middle_m).norm() > track.radius_m + radius_m_[i]) continue;
-      const auto both = Intersection(scan_.seen[i].outline_m, track.outline_m);
-      if (!both.empty() && AreaOf(both) >= 0.5 * AreaOf(scan_.seen[i].outline_m)) use_[i] = Use::kFree;
+      const auto both = Intersection(sightings_.seen[i].outline_m, track.outline_m);
+      if (!both.empty() && AreaOf(both) >= 0.5 * AreaOf(sightings_.seen[i].outline_m)) use_[i] = Use::kFree;
     }
   }
 }
 
 void Step::FollowLandPieces() {
-  seems_moving_.assign(scan_.seen.size(), false);
+  seems_moving_.assign(sightings_.seen.size(), false);
   std::vector<LandPieces::Seen> pieces;
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    const auto& seen = scan_.seen[i];
-    if (use_[i] != Use::kLand || !seen.is_sure || radius_m_[i] > LandPieces::kGreatestRadiusM || places_m_[i].size() < kLeastPieceReturns) continue;
+  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
+    const auto& seen = sightings_.seen[i];
+    if (use_[i] != Use::kLand || !seen.is_sure || radius_m_[i] > LandPieces::kGreatestRadiusM || sightings_.places_m[i].size() < kLeastPieceReturns)
+      continue;
     if (std::ranges::any_of(known_.tracks, [&](const Followed& track) { return track.is_confirmed && Contains(track.outline_m, middle_m_[i]); }))
       continue;
-    pieces.push_back(
-        {i, seen.outline_m, places_m_[i], heights_m_[i], middle_m_[i], radius_m_[i], ranges_m_[i], seen.covariance_relative_m2, SidesOf(i)});
+    pieces.push_back({i, seen.outline_m, sightings_.places_m[i], sightings_.heights_m[i], middle_m_[i], radius_m_[i], ranges_m_[i],
+                      seen.covariance_relative_m2, SidesOf(i)});
   }
   std::vector<bool> seems_moving;
   for (auto& proven : known_.land_pieces.Update(pieces, known_.sight, scan_.end_time, seems_moving)) {
-    const auto& seen = scan_.seen[proven.index];
+    const auto& seen = sightings_.seen[proven.index];
     Followed track;
     track.id = known_.next_id++;
     track.first = proven.first;
@@ -89,45 +83,26 @@ void Step::FollowLandPieces() {
   for (std::size_t k = 0; k < pieces.size(); ++k) seems_moving_[pieces[k].index] = seems_moving[k];
 }
 
-// A track that is hit by what is called land.
-void Step::VoteLand(Followed& track, bool was_land) {
-  if (track.body && track.body->IsMoving(kMovesProbability)) ++track.num_moving;
-  const double gain = std::clamp(kKnownHits * kLandVoteGainKnown / track.num_hits, kLandVoteGainKnown, kLandVoteGain);
-  track.land_votes += gain * ((was_land ? 1.0 : 0.0) - track.land_votes);
-}
-
-// What most scans call land is land; so is what was not seen by itself for some time and lies in land, unless it was seen to move: then it is a boat
-// that came alongside, for as long as beams end in it.
+// What the ledger takes land to be lies in it by itself no more, unless it was seen to move: then it is a boat that came alongside, for as long as
+// beams end in it.
 bool Step::IsLand(const Followed& track) const {
-  constexpr double kShortestS = 1.0;
-  constexpr double kLongestS = 10.0;
-  constexpr double kPerHitS = 0.05;
-  if (HasMoved(track)) return false;
-  if (track.num_hits >= kLeastVotes && track.land_votes > kLandVotes) return true;
-  const double alone_s = ToSeconds(scan_.end_time - track.seen_alone);
-  if (alone_s <= std::clamp(kPerHitS * track.num_hits, kShortestS, kLongestS)) return false;
-  if (track.is_inside_now) return track.inside_of == 0;
-  return known_.land.IsLand(track.middle_m) || known_.land.Share(track.outline_m, kMostLandPlaces) > 0.0;
+  constexpr double kWithinS = 0.5;
+  return !HasMoved(track) && track.is_inside_now && track.inside_of == 0 && ToSeconds(scan_.end_time - track.seen_alone) > kWithinS;
 }
 
-// A segment beside what is called land may be cut off it by chance: it must be seen for longer until it is a thing.
+// What stands beside land may be cut off it by chance, until the ledger has seen both for a while.
 bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
   constexpr int kSeenFor = 10;  // scans
-  constexpr double kBesideLandM = 1.0;
-  constexpr double kBesideShoreM = 2.0;
+  constexpr double kBesideM = 2.0;
   if (track.num_hits >= kSeenFor) return false;
-  for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
-    const auto& other = scan_.seen[k];
-    if (!other.is_land || !other.is_sure) continue;
-    if ((middle_m_[k] - middle_m_[i]).norm() > radius_m_[k] + radius_m_[i] + kBesideLandM) continue;
-    if (GapOf(other.outline_m, scan_.seen[i].outline_m).distance_m >= kBesideLandM) continue;
+  for (std::size_t k = 0; k < sightings_.seen.size(); ++k) {
+    if (!sightings_.seen[k].is_land || (middle_m_[k] - middle_m_[i]).norm() > radius_m_[k] + radius_m_[i] + kBesideM) continue;
     // Not the hull of a bay: its shore.
-    if (heights_m_[k].empty() || std::ranges::any_of(places_m_[k], [&](const Eigen::Vector2d& place_m) {
-          return (place_m - middle_m_[i]).norm() < radius_m_[i] + kBesideShoreM;
-        }))
+    if (std::ranges::any_of(sightings_.places_m[k],
+                            [&](const Eigen::Vector2d& place_m) { return (place_m - middle_m_[i]).norm() < radius_m_[i] + kBesideM; }))
       return true;
   }
-  return known_.land.Share(scan_.seen[i].outline_m, kMostLandPlaces) > 0.0;
+  return false;
 }
 
 void Step::EndLand() {
@@ -138,22 +113,22 @@ void Step::EndLand() {
 
 void Step::FeedLand() {
   known_.land.AdvanceTo(scan_.end_time);
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    const auto& seen = scan_.seen[i];
+  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
+    const auto& seen = sightings_.seen[i];
     if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);
     if (use_[i] == Use::kLeftOut || !seen.is_sure || seems_moving_[i]) continue;
     std::vector<const Followed*> near;
     for (const auto& track : known_.tracks) {
       if (IsKnown(track) && !IsLand(track) && (track.middle_m - middle_m_[i]).norm() < track.radius_m + radius_m_[i]) near.push_back(&track);
     }
-    const std::size_t step = 1 + places_m_[i].size() / kMostFed;
+    const std::size_t step = 1 + sightings_.places_m[i].size() / kMostFed;
     std::vector<Eigen::Vector2d> fed_m;
     std::vector<double> tops_m;
-    for (std::size_t k = 0; k < places_m_[i].size(); k += step) {
-      const auto& place_m = places_m_[i][k];
+    for (std::size_t k = 0; k < sightings_.places_m[i].size(); k += step) {
+      const auto& place_m = sightings_.places_m[i][k];
       if (seen.is_land && std::ranges::any_of(near, [&](const Followed* track) { return Contains(track->outline_m, place_m); })) continue;
       fed_m.push_back(place_m);
-      if (!heights_m_[i].empty()) tops_m.push_back(heights_m_[i][k]);
+      if (!sightings_.heights_m[i].empty()) tops_m.push_back(sightings_.heights_m[i][k]);
     }
     const bool is_known = std::ranges::any_of(
         near, [&](const Followed* track) { return std::ranges::find(track->segment_ids, seen.segment_id) != track->segment_ids.end(); });

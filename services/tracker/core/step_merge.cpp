@@ -31,10 +31,10 @@ bool Step::Touch(const Followed& one, const Followed& other) const {
   constexpr std::size_t kMostTouching = 200;
   const auto places = [this](const Followed& track) {
     std::vector<Eigen::Vector2d> found;
-    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-      if (std::ranges::find(track.segment_ids, scan_.seen[i].segment_id) == track.segment_ids.end()) continue;
-      const std::size_t step = 1 + places_m_[i].size() / kMostTouching;
-      for (std::size_t k = 0; k < places_m_[i].size(); k += step) found.push_back(places_m_[i][k]);
+    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
+      if (std::ranges::find(track.segment_ids, sightings_.seen[i].segment_id) == track.segment_ids.end()) continue;
+      const std::size_t step = 1 + sightings_.places_m[i].size() / kMostTouching;
+      for (std::size_t k = 0; k < sightings_.places_m[i].size(); k += step) found.push_back(sightings_.places_m[i][k]);
     }
     return found;
   };
@@ -158,6 +158,8 @@ void Step::Join(Followed& one, Followed& other) {
     std::swap(one.first, other.first);
   }
   one.is_proven = one.is_proven || other.is_proven;
+  one.segment_ids.insert(one.segment_ids.end(), other.segment_ids.begin(), other.segment_ids.end());
+  other.segment_ids.clear();
   if (one.overtaking == Encounter::kNone) one.overtaking = other.overtaking;
   Followed::Relate(one.parents, other.id, scan_.end_time);
   Followed::Relate(other.children, one.id, scan_.end_time);

@@ -114,24 +114,6 @@ Encounter StillOvertaking(Encounter before, const Track& track) {
   return track.encounter == Encounter::kOvertaking || track.encounter == Encounter::kOvertaken ? track.encounter : Encounter::kNone;
 }
 
-// By the segments that tracks and land explain.
-void LabelPieces(const ScanInput& scan, Picture& picture) {
-  if (!scan.sweep || scan.sweep->label.empty()) return;
-  std::map<std::int32_t, std::int64_t> track_of;
-  for (const std::int32_t segment : picture.land_segment_ids) track_of[segment] = 0;
-  for (const auto& track : picture.tracks) {
-    for (const std::int32_t segment : track.segment_ids) track_of[segment] = track.id;
-  }
-  const auto& piece_of = scan.sweep->piece.empty() ? scan.sweep->label : scan.sweep->piece;
-  for (std::size_t cell = 0; cell < piece_of.size(); ++cell) {
-    if (scan.sweep->label[cell] <= 0 || piece_of[cell] <= 0) continue;
-    const auto piece = static_cast<std::size_t>(piece_of[cell]);
-    if (picture.track_of_piece.size() < piece) picture.track_of_piece.resize(piece, kNoTrack);
-    const auto found = track_of.find(scan.sweep->label[cell]);
-    if (found != track_of.end()) picture.track_of_piece[piece - 1] = found->second;
-  }
-}
-
 }  // namespace
 
 Tracker::Tracker(const TrackerParams& params) : params_(params), memory_(std::make_unique<Memory>(params)) {}
@@ -140,6 +122,7 @@ Tracker::~Tracker() = default;
 void Tracker::Reset() {
   memory_->known.tracks.clear();
   memory_->known.together_s.clear();
+  memory_->known.ledger.Clear();
   memory_->known.land.Clear();
   memory_->known.land_pieces.Clear();
   memory_->known.clutter = {};
@@ -199,6 +182,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   picture.is_sight_known = step.is_sight_known();
   picture.land_segment_ids = step.land_ids();
   picture.merged = step.merged();
+  picture.track_of_piece = step.track_of_piece();
   for (auto& track : memory.known.tracks) {
     const double unseen_s = track.UnseenS(scan.end_time);
     const double existence = track.Existence();
@@ -257,7 +241,6 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   std::erase_if(memory.known.tracks, [](const Followed& track) { return track.is_ended; });
   std::ranges::sort(memory.known.tracks, {}, &Followed::id);
   std::ranges::sort(picture.tracks, {}, &Track::id);
-  LabelPieces(scan, picture);
   memory.standing.Update(scan, step.is_sight_known() ? &memory.known.sight : nullptr, params_.max_range_m, picture.tracks);
   if (scan.own) {
     memory.known.land.Forget(scan.own->position_map_m.head<2>());

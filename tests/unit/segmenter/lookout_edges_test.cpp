@@ -6,7 +6,7 @@
 #include <random>
 #include <tuple>
 
-#include "services/segmenter/core/lookout/partition.hpp"
+#include "common/core/partition.hpp"
 #include "tests/unit/segmenter/lookout_stages.hpp"
 #include "tests/unit/wire/counting_new.hpp"
 

@@ -1,4 +1,4 @@
-#include "services/segmenter/core/lookout/partition.hpp"
+#include "common/core/partition.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -150,7 +150,7 @@ TEST(LandInTracker, QuayInChangingPiecesNeverBecomesATrack) {
         scan, {-15.0 + 0.1 * scan, 0.0}, kQuayWalls,
         [&](int, const Eigen::Vector2d& place_m) {
           const auto piece = std::ranges::upper_bound(cuts_m, place_m.x()) - cuts_m.begin();
-          return Called{static_cast<int>(piece), is_land[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, piece - 1))]};
+          return Called{static_cast<int>(piece) + 1, is_land[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, piece - 1))]};
         },
         random);
     const auto& picture = tracker.Update(input);

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "common/core/partition.hpp"
 #include "services/segmenter/core/groups.hpp"
 #include "services/segmenter/core/lookout/evidence.hpp"
 #include "services/segmenter/core/lookout/lookout_params.hpp"
 #include "services/segmenter/core/lookout/pairs.hpp"
-#include "services/segmenter/core/lookout/partition.hpp"
 #include "services/segmenter/core/lookout/piece_features.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
 #include "services/segmenter/core/lookout/scan_grid.hpp"

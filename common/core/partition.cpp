@@ -1,30 +1,31 @@
-#include "services/segmenter/core/lookout/partition.hpp"
+#include "common/core/partition.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <numeric>
 
-namespace lookout::segmenter {
+namespace lookout {
 
 namespace {
 
-constexpr std::int32_t kNone = -1;
+constexpr std::int32_t kNoEnd = -1;
 
 std::size_t At(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
-// Of equal means and gaps the edge that was given first: only then do numbers decide.
+// Of equal evidence and gaps the edge that was given first: only then do numbers decide.
 bool Partition::IsWorse(const Best& a, const Best& b) {
-  if (a.mean != b.mean) return a.mean < b.mean;
+  if (a.evidence != b.evidence) return a.evidence < b.evidence;
   if (a.gap_m != b.gap_m) return a.gap_m > b.gap_m;
   return a.edge > b.edge;
 }
 
 void Partition::Push(std::int32_t index, float threshold) {
   const Edge& edge = edges_[At(index)];
-  if (edge.mean() <= threshold) return;
-  heap_.push_back({edge.mean(), edge.gap_m, index, edge.version});
+  const double evidence = EvidenceOf(edge);
+  if (evidence <= threshold) return;
+  heap_.push_back({evidence, edge.gap_m, index, edge.version});
   std::ranges::push_heap(heap_, IsWorse);
 }
 
@@ -32,9 +33,9 @@ void Partition::Find(std::int32_t num_pieces, std::span<const EvidencePair> pair
   constexpr std::size_t kLeastSlots = 64;
   edges_.clear();
   ends_.resize(2 * pairs.size());
-  any_end_.assign(At(num_pieces), kNone);
+  any_end_.assign(At(num_pieces), kNoEnd);
   num_ends_.assign(At(num_pieces), 0);
-  edge_slot_.assign(std::max(kLeastSlots, std::bit_ceil(2 * pairs.size())), kNone);
+  edge_slot_.assign(std::max(kLeastSlots, std::bit_ceil(2 * pairs.size())), kNoEnd);
   heap_.clear();
   heap_.reserve(2 * pairs.size());  // each once, and once more for each that becomes a part of it
   parent_.resize(At(num_pieces));
@@ -58,35 +59,35 @@ void Partition::Find(std::int32_t num_pieces, std::span<const EvidencePair> pair
     Merge(is_one_larger ? one : other, is_one_larger ? other : one, threshold);
   }
   group_of_piece_.clear();
-  number_of_root_.assign(At(num_pieces), kNone);
+  number_of_root_.assign(At(num_pieces), kNoEnd);
   count_ = 0;
   for (std::int32_t piece = 0; piece < num_pieces; ++piece) {
     std::int32_t root = piece;
     while (parent_[At(root)] != root) root = parent_[At(root)] = parent_[At(parent_[At(root)])];
     std::int32_t& number = number_of_root_[At(root)];
-    if (number == kNone) number = count_++;
+    if (number == kNoEnd) number = count_++;
     group_of_piece_.push_back(number);
   }
 }
 
 void Partition::Merge(std::int32_t kept, std::int32_t gone, float threshold) {
   parent_[At(gone)] = kept;
-  while (any_end_[At(gone)] != kNone) {
+  while (any_end_[At(gone)] != kNoEnd) {
     const std::int32_t end = any_end_[At(gone)];
     const std::int32_t index = end / 2;
     Edge& edge = edges_[At(index)];
     const std::int32_t neighbour = edge.group[At(1 - end % 2)];
     Leave(index);
     Take(end);
-    const std::int32_t same = neighbour == kept ? kNone : edge_slot_[SlotOf(kept, neighbour)];
-    if (neighbour != kept && same == kNone) {
+    const std::int32_t same = neighbour == kept ? kNoEnd : edge_slot_[SlotOf(kept, neighbour)];
+    if (neighbour != kept && same == kNoEnd) {
       Hang(end, kept);
       Enter(index);
-      continue;  // its mean is as it was
+      continue;  // its evidence is as it was
     }
     Take(end ^ 1);
     edge.is_gone = true;
-    if (same == kNone) continue;
+    if (same == kNoEnd) continue;
     Edge& into = edges_[At(same)];
     into.sum += edge.sum;
     into.count += edge.count;
@@ -100,7 +101,7 @@ void Partition::Hang(std::int32_t end, std::int32_t group) {
   edges_[At(end / 2)].group[At(end % 2)] = group;
   ++num_ends_[At(group)];
   std::int32_t& any = any_end_[At(group)];
-  if (any == kNone) {
+  if (any == kNoEnd) {
     any = end;
     ends_[At(end)] = {end, end};
     return;
@@ -117,7 +118,7 @@ void Partition::Take(std::int32_t end) {
   const auto [last, next] = ends_[At(end)];
   ends_[At(last)].next = next;
   ends_[At(next)].last = last;
-  if (any_end_[At(group)] == end) any_end_[At(group)] = next == end ? kNone : next;
+  if (any_end_[At(group)] == end) any_end_[At(group)] = next == end ? kNoEnd : next;
 }
 
 std::size_t Partition::FirstSlotOf(std::int32_t one, std::int32_t other) const {
@@ -130,7 +131,7 @@ std::size_t Partition::FirstSlotOf(std::int32_t one, std::int32_t other) const {
 // Where the edge between two groups is, or a free slot.
 std::size_t Partition::SlotOf(std::int32_t one, std::int32_t other) const {
   std::size_t slot = FirstSlotOf(one, other);
-  for (; edge_slot_[slot] != kNone; slot = (slot + 1) & (edge_slot_.size() - 1)) {
+  for (; edge_slot_[slot] != kNoEnd; slot = (slot + 1) & (edge_slot_.size() - 1)) {
     const auto& group = edges_[At(edge_slot_[slot])].group;
     if ((group[0] == one && group[1] == other) || (group[0] == other && group[1] == one)) break;
   }
@@ -147,14 +148,14 @@ void Partition::Leave(std::int32_t edge) {
   const std::size_t mask = edge_slot_.size() - 1;
   const auto [one, other] = edges_[At(edge)].group;
   std::size_t hole = SlotOf(one, other);
-  for (std::size_t slot = (hole + 1) & mask; edge_slot_[slot] != kNone; slot = (slot + 1) & mask) {
+  for (std::size_t slot = (hole + 1) & mask; edge_slot_[slot] != kNoEnd; slot = (slot + 1) & mask) {
     const auto [a, b] = edges_[At(edge_slot_[slot])].group;
     const std::size_t first = FirstSlotOf(a, b);
     if (((slot - first) & mask) < ((slot - hole) & mask)) continue;
     edge_slot_[hole] = edge_slot_[slot];
     hole = slot;
   }
-  edge_slot_[hole] = kNone;
+  edge_slot_[hole] = kNoEnd;
 }
 
-}  // namespace lookout::segmenter
+}  // namespace lookout

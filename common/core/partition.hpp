@@ -1,4 +1,4 @@
-// From evidence for pairs to groups: greedy contraction with mean linkage.
+// From evidence for pairs to groups: greedy contraction.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace lookout::segmenter {
+namespace lookout {
 
 /// Evidence that two pieces are one.
 struct EvidencePair {
@@ -17,10 +17,15 @@ struct EvidencePair {
   float gap_m = 0.0F;  // of equal evidence, the least gap comes first
 };
 
-/// Merges the two groups with the greatest mean of the log odds of the pairs between them, again and again, while that is above a threshold. Pairs
-/// that are not given are no evidence, neither for nor against.
+/// What speaks for two groups to be one: the mean of the evidence of the pairs between them, or its sum.
+enum class Linkage { kMean, kSum };
+
+/// Merges the two groups with the most evidence between them, again and again, while that is above a threshold. Pairs that are not given are no
+/// evidence, neither for nor against.
 class Partition {
  public:
+  explicit Partition(Linkage linkage = Linkage::kMean) : linkage_(linkage) {}
+
   /// @param pairs  each pair at most once
   /// Cost: E log E for E pairs: the group with fewer neighbours moves to the other. Allocates nothing once it has seen as many of both.
   void Find(std::int32_t num_pieces, std::span<const EvidencePair> pairs, float threshold);
@@ -38,8 +43,6 @@ class Partition {
     float gap_m = 0.0F;
     std::int32_t version = 0;
     bool is_gone = false;
-
-    double mean() const { return sum / count; }
   };
   // End of edge i / 2 at its group i % 2, in the ring of the ends at that group.
   struct End {
@@ -47,13 +50,14 @@ class Partition {
     std::int32_t next = 0;
   };
   struct Best {
-    double mean;
+    double evidence;
     float gap_m;
     std::int32_t edge;
     std::int32_t version;
   };
 
   static bool IsWorse(const Best& a, const Best& b);
+  double EvidenceOf(const Edge& edge) const { return linkage_ == Linkage::kMean ? edge.sum / edge.count : edge.sum; }
   void Push(std::int32_t edge, float threshold);
   void Merge(std::int32_t kept, std::int32_t gone, float threshold);
   void Hang(std::int32_t end, std::int32_t group);
@@ -64,6 +68,7 @@ class Partition {
   void Enter(std::int32_t edge);
   void Leave(std::int32_t edge);
 
+  Linkage linkage_;
   std::vector<Edge> edges_;
   std::vector<End> ends_;                // [2 edges]
   std::vector<std::int32_t> any_end_;    // [pieces] an end at the group; -1 = there is none
@@ -76,4 +81,4 @@ class Partition {
   std::int32_t count_ = 0;
 };
 
-}  // namespace lookout::segmenter
+}  // namespace lookout

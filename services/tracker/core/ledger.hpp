@@ -1,0 +1,88 @@
+// What the scans so far say of neighbouring places: that they are of one thing, or of two, and that they are land.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/core/partition.hpp"
+#include "services/tracker/core/vote_grid.hpp"
+
+namespace lookout::tracker {
+
+/// The segmenter decides anew in each scan which pieces are one thing, and what it gets wrong flickers. The ledger keeps its decisions by place: for
+/// each pair of neighbouring cells the mean vote of the scans that saw both, the last ones most. What is one thing in a scan is then a sum of
+/// evidence: over all pairs of cells of two pieces, the mean vote, which counts less with distance and more with returns. Two pieces of land touch
+/// weakly, so that they are land counts as evidence, too.
+///
+/// What stands is remembered on the earth, what moves in a frame that moves and turns with it. Between two frames the scan alone decides; but what
+/// was there for a while is no part of what moves past it.
+class Ledger {
+ public:
+  /// One piece of the scan (segments_t): what the segmenter does not cut.
+  struct Piece {
+    std::int32_t segment = 0;                   // any number; the same for pieces of one segment
+    bool is_land = false;                       // as its segment is called in this scan
+    std::int32_t frame = 0;                     // index of the frames
+    std::span<const Eigen::Vector2d> places_m;  // its returns on the map, at least one
+  };
+  /// Where places are remembered.
+  struct Frame {
+    std::int64_t id = 0;                                            // 0: the earth; each other thing that moves has its own, not used again
+    Eigen::Isometry2d T_frame_map = Eigen::Isometry2d::Identity();  // now
+  };
+  struct Groups {
+    std::vector<std::int32_t> of_piece;  // [pieces] numbered from 0 in the order of their first piece
+    std::vector<double> land;            // [groups] mean vote that it is land, -1 to 1
+  };
+
+  /// Takes note of a scan, and says what is one thing in it. What has not been seen in the last 200 scans is forgotten.
+  ///
+  /// @param frames  the first is the earth
+  /// @return until the next call
+  /// Cost: proportional to the pairs of cells with returns that are 2.5 m apart at most; figures in the bench. Memory: VoteGrid.
+  const Groups& Divide(std::span<const Piece> pieces, std::span<const Frame> frames);
+
+  void Clear();
+
+ private:
+  // Evidence of pairs of pieces, in the order in which these were met first.
+  class Sums {
+   public:
+    void Begin(std::size_t num_pieces);
+    struct Met {
+      float& evidence;
+      bool is_first;
+    };
+    Met Of(std::int32_t one, std::int32_t other);
+    std::span<const EvidencePair> pairs() const { return pairs_; }
+
+   private:
+    void Grow();
+    std::size_t SlotOf(std::int32_t one, std::int32_t other) const;
+
+    std::vector<EvidencePair> pairs_;
+    std::vector<std::int32_t> slots_;  // open hash table: index of pairs_, or -1
+  };
+
+  void TakeNote(std::span<const Piece> pieces, std::span<const Frame> frames);
+  void FindLand(std::span<const Piece> pieces);
+  void AddEvidence(const VoteGrid& grid, double reach_m, double weight);
+  void AddEvidenceAcross(std::span<const Piece> pieces);
+  void AddEvidenceOfLand(std::span<const Piece> pieces);
+  bool IsLand(std::int32_t piece) const;
+  void Group(std::span<const Piece> pieces);
+
+  VoteGrid fine_{0.5, VoteGrid::Content::kAll};
+  VoteGrid coarse_{2.0, VoteGrid::Content::kMostOf};
+  VoteGrid across_{0.5, VoteGrid::Content::kAll};  // of this scan only, on the map
+  std::vector<double> land_;                       // [pieces] mean vote of its cells, by returns
+  std::vector<double> old_;                        // [pieces] share of its returns where something was seen for a while
+  Sums sums_;
+  Partition partition_{Linkage::kSum};
+  Groups groups_;
+};
+
+}  // namespace lookout::tracker

@@ -1,0 +1,176 @@
+#include "services/tracker/core/sightings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace lookout::tracker {
+
+namespace {
+
+constexpr std::int32_t kNothing = -1;
+
+struct PieceReturns {
+  std::int32_t number = 0;
+  std::size_t segment = 0;  // of scan.seen, by index
+  std::vector<Eigen::Vector2d> places_m;
+  std::vector<double> heights_m;
+};
+
+// [numbers] by number, from `list`; kNothing where there is none.
+void SetAt(std::vector<std::int32_t>& list, std::int32_t number, std::int32_t value) {
+  if (number <= 0) return;
+  const auto at = static_cast<std::size_t>(number - 1);
+  if (list.size() <= at) list.resize(at + 1, kNothing);
+  list[at] = value;
+}
+std::int32_t At(const std::vector<std::int32_t>& list, std::int32_t number) {
+  const auto at = static_cast<std::size_t>(number - 1);
+  return number > 0 && at < list.size() ? list[at] : kNothing;
+}
+
+// Pieces of the segments of OBSTACLES, in the order of their first return.
+std::vector<PieceReturns> PiecesOf(const ScanInput& scan, const Sight& sight) {
+  std::vector<std::int32_t> segment_of;
+  for (std::size_t i = 0; i < scan.seen.size(); ++i) SetAt(segment_of, scan.seen[i].segment_id, static_cast<std::int32_t>(i));
+  std::vector<std::int32_t> index_of;
+  std::vector<PieceReturns> pieces;
+  for (const auto& one : sight.Returns()) {
+    const std::int32_t segment = At(segment_of, one.label);
+    if (segment == kNothing || one.piece <= 0) continue;
+    std::int32_t index = At(index_of, one.piece);
+    if (index == kNothing) {
+      index = static_cast<std::int32_t>(pieces.size());
+      SetAt(index_of, one.piece, index);
+      pieces.push_back({.number = one.piece, .segment = static_cast<std::size_t>(segment), .places_m = {}, .heights_m = {}});
+    }
+    auto& piece = pieces[static_cast<std::size_t>(index)];
+    piece.places_m.push_back(one.place_m);
+    piece.heights_m.push_back(one.height_m);
+  }
+  return pieces;
+}
+
+Sightings SegmentsAsTheyAre(const ScanInput& scan) {
+  Sightings all;
+  all.seen = scan.seen;
+  for (std::size_t i = 0; i < all.seen.size(); ++i) {
+    auto& seen = all.seen[i];
+    SetAt(all.of_segment, seen.segment_id, static_cast<std::int32_t>(i));
+    seen.segment_id = static_cast<std::int32_t>(i) + 1;
+    all.places_m.push_back(seen.waterline_m.empty() ? seen.outline_m : seen.waterline_m);
+    all.heights_m.emplace_back();
+  }
+  return all;
+}
+
+// The earth, and what moves.
+std::vector<Ledger::Frame> FramesOf(const std::deque<Followed>& tracks, std::vector<const Followed*>& owners) {
+  std::vector<Ledger::Frame> frames(1);
+  for (const auto& track : tracks) {
+    if (track.frame == 0 || !track.body) continue;
+    frames.push_back({track.frame, track.body->Frame().inverse()});
+    owners.push_back(&track);
+  }
+  return frames;
+}
+
+// The frame of what moves in whose outline most of a piece lies.
+std::int32_t FrameOf(const PieceReturns& piece, const std::vector<const Followed*>& owners) {
+  constexpr double kBesideM = 0.3;
+  for (std::size_t k = 0; k < owners.size(); ++k) {
+    const auto& track = *owners[k];
+    std::size_t num_in = 0;
+    for (const auto& place_m : piece.places_m) {
+      if ((place_m - track.middle_m).norm() > track.radius_m + kBesideM) continue;
+      if (Contains(track.outline_m, place_m) || GapOf(track.outline_m, std::array{place_m}).distance_m < kBesideM) ++num_in;
+    }
+    if (2 * num_in > piece.places_m.size()) return static_cast<std::int32_t>(k) + 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger& ledger) {
+  const auto pieces = PiecesOf(scan, sight);
+  if (pieces.empty()) return SegmentsAsTheyAre(scan);
+  std::vector<const Followed*> owners;
+  const auto frames = FramesOf(tracks, owners);
+  std::vector<Ledger::Piece> asked;
+  asked.reserve(pieces.size());
+  for (const auto& piece : pieces) {
+    const auto& segment = scan.seen[piece.segment];
+    asked.push_back({static_cast<std::int32_t>(piece.segment), segment.is_land && segment.is_sure, FrameOf(piece, owners), piece.places_m});
+  }
+  const auto& groups = ledger.Divide(asked, frames);
+
+  // Segments that show no return, as at the edge of a lost packet, stay as they are.
+  Sightings all;
+  std::vector<std::vector<std::size_t>> pieces_of(groups.land.size());
+  std::vector<std::size_t> returns_of_segment(scan.seen.size(), 0);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces_of[static_cast<std::size_t>(groups.of_piece[i])].push_back(i);
+    returns_of_segment[pieces[i].segment] += pieces[i].places_m.size();
+  }
+  std::vector<std::size_t> most_of_segment(scan.seen.size(), 0);
+  for (std::size_t group = 0; group < pieces_of.size(); ++group) {
+    std::map<std::size_t, std::size_t> returns_of;  // by segment
+    Seen whole;
+    std::vector<Eigen::Vector2d> places_m;
+    std::vector<double> heights_m;
+    for (const auto i : pieces_of[group]) {
+      const auto& piece = pieces[i];
+      returns_of[piece.segment] += piece.places_m.size();
+      places_m.insert(places_m.end(), piece.places_m.begin(), piece.places_m.end());
+      heights_m.insert(heights_m.end(), piece.heights_m.begin(), piece.heights_m.end());
+      SetAt(all.of_piece, piece.number, static_cast<std::int32_t>(group));
+    }
+    const auto most = std::ranges::max_element(returns_of, {}, [](const auto& one) { return one.second; })->first;
+    const bool is_one_segment = returns_of.size() == 1 && returns_of.at(most) == returns_of_segment[most];
+    if (is_one_segment) {
+      whole = scan.seen[most];
+    } else {
+      whole = scan.seen[most];
+      whole.outline_m = HullOf(places_m);
+      whole.waterline_m.clear();
+      whole.num_returns = static_cast<int>(places_m.size());
+      whole.top_above_water_m = std::ranges::max(heights_m);
+      double time_us = 0.0;
+      double thing = 0.0;
+      double sure = 0.0;
+      for (const auto& [segment, count] : returns_of) {
+        const double share = static_cast<double>(count) / static_cast<double>(places_m.size());
+        time_us += share * static_cast<double>((scan.seen[segment].time - scan.time).count());
+        thing += share * Logit(scan.seen[segment].thing_probability);
+        sure += share * (scan.seen[segment].is_sure ? 1.0 : 0.0);
+      }
+      whole.time = scan.time + std::chrono::microseconds(std::llround(time_us));
+      whole.thing_probability = Sigmoid(thing);
+      whole.is_sure = sure > 0.5;
+    }
+    const bool is_land = groups.land[group] > 0.0;
+    whole.is_land = is_land && whole.is_sure;
+    for (const auto& [segment, count] : returns_of) {
+      if (count <= most_of_segment[segment]) continue;
+      most_of_segment[segment] = count;
+      SetAt(all.of_segment, scan.seen[segment].segment_id, static_cast<std::int32_t>(group));
+    }
+    whole.segment_id = static_cast<std::int32_t>(group) + 1;
+    all.seen.push_back(std::move(whole));
+    all.places_m.push_back(std::move(places_m));
+    all.heights_m.push_back(std::move(heights_m));
+  }
+  for (std::size_t i = 0; i < scan.seen.size(); ++i) {
+    if (returns_of_segment[i] > 0) continue;
+    const auto& seen = scan.seen[i];
+    SetAt(all.of_segment, seen.segment_id, static_cast<std::int32_t>(all.seen.size()));
+    all.places_m.push_back(seen.waterline_m.empty() ? seen.outline_m : seen.waterline_m);
+    all.heights_m.emplace_back();
+    all.seen.push_back(seen);
+    all.seen.back().segment_id = static_cast<std::int32_t>(all.seen.size());
+  }
+  return all;
+}
+
+}  // namespace lookout::tracker
