@@ -29,7 +29,8 @@ inline constexpr int kMostHits = 30;               // that count in a mean, the 
 inline constexpr int kMostLooks = 60;              // that speak for it
 
 struct Followed {
-  std::int64_t id = 0;
+  std::int64_t id = 0;      // in the order in which they began
+  std::int64_t number = 0;  // given when it is confirmed; 0: not yet
   Utime first;
   Utime seen;
   Utime seen_alone;                        // when it was last seen by itself, and not inside of what another is seen by
@@ -55,7 +56,7 @@ struct Followed {
   int num_misfits = 0;                                // scans in a row whose outline was another
   std::deque<bool> looks;
   std::vector<std::int32_t> segment_ids;
-  std::vector<std::pair<std::int64_t, Utime>> parents;
+  std::vector<std::pair<std::int64_t, Utime>> parents;  // by number
   std::vector<std::pair<std::int64_t, Utime>> children;
   std::int64_t frame = 0;  // of the ledger: 0 the earth, above 0 its own, since it moves
   double stood_s = 0.0;    // since it moved last
@@ -82,6 +83,11 @@ struct Followed {
     const double gain = 1.0 / std::min(num_hits, kMostHits);
     mean_thing += gain * (thing_log_odds - mean_thing);
     if (num_hits > 1) mean_step_m2 += (num_hits == 2 ? 1.0 : gain) * (step_m * step_m - mean_step_m2);
+  }
+  // As others know it: a number from 1 up, or one of -2 and below until it is confirmed.
+  std::int64_t PublicId() const {
+    constexpr std::int64_t kMostAtATime = 900'000;
+    return number > 0 ? number : -2 - id % kMostAtATime;
   }
   double Existence() const { return Sigmoid(log_odds) * Sigmoid(ThingLogOdds()); }
   double UnseenS(Utime now) const { return ToSeconds(now - seen); }

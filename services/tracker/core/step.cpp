@@ -82,7 +82,7 @@ void Step::Label() {
   std::vector<std::int64_t> track_of(sightings_.seen.size(), kNoTrack);
   for (const std::int32_t number : land_ids_) track_of[static_cast<std::size_t>(number - 1)] = 0;
   for (auto& track : known_.tracks) {
-    for (const std::int32_t number : track.segment_ids) track_of[static_cast<std::size_t>(number - 1)] = track.id;
+    for (const std::int32_t number : track.segment_ids) track_of[static_cast<std::size_t>(number - 1)] = track.PublicId();
     track.segment_ids.clear();
   }
   const auto of = [&track_of](std::int32_t seen) { return seen < 0 ? kNoTrack : track_of[static_cast<std::size_t>(seen)]; };
@@ -93,10 +93,10 @@ void Step::Label() {
     const std::int64_t id = of(sightings_.of_segment[i]);
     const auto segment = static_cast<std::int32_t>(i) + 1;
     if (id == 0) land_ids_.push_back(segment);
-    if (id > 0) segments_of[id].push_back(segment);
+    if (id != 0 && id != kNoTrack) segments_of[id].push_back(segment);
   }
   for (auto& track : known_.tracks) {
-    if (const auto found = segments_of.find(track.id); found != segments_of.end()) track.segment_ids = std::move(found->second);
+    if (const auto found = segments_of.find(track.PublicId()); found != segments_of.end()) track.segment_ids = std::move(found->second);
   }
 }
 
@@ -377,7 +377,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   constexpr double kCrestS = 1.0;
   const bool is_perhaps_crest = track.mean_thing < kCrestThing && ToSeconds(scan_.end_time - track.first) < kCrestS;
   if (!track.is_confirmed && !is_perhaps_crest && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i))
-    track.is_confirmed = true;
+    Confirm(track);
 }
 
 // What moves is remembered in a frame of its own, until it has stood for a while.
@@ -392,6 +392,18 @@ void Step::ChooseFrame(Followed& track) {
   }
   track.stood_s = 0.0;
   if (track.frame == 0 && track.body->moved_m() > kMovedM) track.frame = ++known_.last_frame;
+}
+
+// From now on it has a number, which its parents are told.
+void Step::Confirm(Followed& track) {
+  track.is_confirmed = true;
+  merged_.emplace_back(track.PublicId(), known_.next_number);
+  track.number = known_.next_number++;
+  for (auto& other : known_.tracks) {
+    if (std::ranges::any_of(track.parents, [&](const auto& parent) { return parent.first == other.number; })) {
+      Followed::Relate(other.children, track.number, scan_.end_time);
+    }
+  }
 }
 
 void Step::Remember(Followed& track, bool is_seen) {
@@ -486,15 +498,14 @@ void Step::Begin() {
     Remember(track, true);
     for (auto* other : confirmed) {
       if (IsWithin(track.middle_m, other->middle_m, other->radius_m) && Contains(other->outline_m, track.middle_m)) {
-        Followed::Relate(track.parents, other->id, scan_.end_time);
-        Followed::Relate(other->children, track.id, scan_.end_time);
+        Followed::Relate(track.parents, other->number, scan_.end_time);
       }
     }
     if (seen.is_sure) {
       track.body.emplace(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
       Place(track);
       if (IsClear(i) && !IsPerhapsLand(track, i)) {
-        track.is_confirmed = true;
+        Confirm(track);
         track.log_odds = kClearLogOdds;
       }
     }

@@ -38,6 +38,7 @@ struct Known {
   std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
+  std::int64_t next_number = 1;
   std::int64_t num_outdated = 0;    // segments placed by an own position that became much better known in the scan
   std::int64_t num_over_limit = 0;  // segments that became no track
   double settled_sd_m = 0.0;        // of the own position before, where it became much better known with this scan
@@ -91,6 +92,7 @@ class Step {
   void FindInside();
   bool IsClear(std::size_t i) const;
   void Begin();
+  void Confirm(Followed& track);
   void FeedLand();
   void EndLand();
   void Merge();

@@ -77,7 +77,8 @@ void Step::FollowLandPieces() {
     track.mean_thing = Logit(kPieceThing);
     track.seen_m = track.middle_m;
     track.num_moving = kMovesFor;
-    track.is_confirmed = track.is_proven = true;
+    track.is_proven = true;
+    Confirm(track);
     known_.tracks.push_back(std::move(track));
   }
   for (std::size_t k = 0; k < pieces.size(); ++k) seems_moving_[pieces[k].index] = seems_moving[k];

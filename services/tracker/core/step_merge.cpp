@@ -143,7 +143,6 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
 
 // The second becomes one with the first, by the older name.
 void Step::Join(Followed& one, Followed& other) {
-  merged_.emplace_back(other.id, one.id);
   const bool is_part = one.is_seen_now && other.is_seen_now;
   // What is confirmed is not replaced by what is not.
   const bool is_larger = AreaOf(other.outline_m) > AreaOf(one.outline_m);
@@ -153,6 +152,7 @@ void Step::Join(Followed& one, Followed& other) {
     if (!is_part && IsMoving(one) && !IsMoving(other)) other.body->MoveAs(*one.body);
     std::swap(one, other);
     std::swap(one.id, other.id);
+    std::swap(one.number, other.number);
     std::swap(one.parents, other.parents);
     std::swap(one.children, other.children);
     std::swap(one.first, other.first);
@@ -161,8 +161,13 @@ void Step::Join(Followed& one, Followed& other) {
   one.segment_ids.insert(one.segment_ids.end(), other.segment_ids.begin(), other.segment_ids.end());
   other.segment_ids.clear();
   if (one.overtaking == Encounter::kNone) one.overtaking = other.overtaking;
-  Followed::Relate(one.parents, other.id, scan_.end_time);
-  Followed::Relate(other.children, one.id, scan_.end_time);
+  // The lower number is the older name.
+  if (one.number == 0 || (other.number > 0 && other.number < one.number)) std::swap(one.number, other.number);
+  merged_.emplace_back(other.PublicId(), one.PublicId());
+  if (other.number > 0) {
+    Followed::Relate(one.parents, other.number, scan_.end_time);
+    Followed::Relate(other.children, one.number, scan_.end_time);
+  }
   if (is_part && other.Existence() > 0.5) {
     one.body->Include(other.outline_m);
     Place(one);

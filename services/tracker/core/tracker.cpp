@@ -194,7 +194,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
       track.is_ended = true;
     if (!track.is_confirmed && !track.body) continue;  // it is nothing yet
     Track out;
-    out.id = track.id;
+    out.id = track.PublicId();
     out.status = track.is_ended                               ? TrackStatus::kLost
                  : !track.is_confirmed                        ? TrackStatus::kTentative
                  : unseen_s <= kCoastingS && existence >= 0.5 ? TrackStatus::kConfirmed

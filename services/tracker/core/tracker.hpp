@@ -36,7 +36,7 @@ enum class TrackKind : std::int32_t { kObstacle = 0, kBuoy = 1, kBoat = 2, kStru
 
 /// One track after a scan, propagated to its end; as in track_t, which says what the members mean.
 struct Track {
-  std::int64_t id = 0;
+  std::int64_t id = 0;  // from 1 up in the order in which they were confirmed; below -1 of a tentative one
   TrackStatus status = TrackStatus::kTentative;
   TrackKind kind = TrackKind::kUnknown;
   Utime first;
@@ -75,7 +75,7 @@ struct Picture {
   std::vector<std::int64_t> track_of_piece;
   std::vector<Eigen::Vector2d> waterline_m;   // every tenth scan, else empty
   std::optional<LandApproach> land_approach;  // nullopt: the own boat hardly moves, its pose is not known, or no land is near its way
-  /// Tracks that became part of another in this scan (from, to).
+  /// Tracks that became part of another in this scan, and tentative ones that got their number (from, to).
   std::vector<std::pair<std::int64_t, std::int64_t>> merged;
 };
 
