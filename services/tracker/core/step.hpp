@@ -15,6 +15,7 @@
 #include "services/tracker/core/land_pieces.hpp"
 #include "services/tracker/core/sight.hpp"
 #include "services/tracker/core/tracker.hpp"
+#include "services/tracker/core/watched_water.hpp"
 
 namespace lookout::tracker {
 
@@ -32,6 +33,7 @@ struct Known {
   LandMemory land = {};
   LandPieces land_pieces = {};
   ClutterMap clutter = {};
+  WatchedWater watched = {};
   std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
@@ -85,6 +87,7 @@ class Step {
   void Miss(Followed& track);
   void FindInside();
   bool IsClear(std::size_t i) const;
+  void AskWatched(Followed& track) const;
   void Begin();
   void FeedLand();
   void EndLand();
