@@ -72,12 +72,17 @@ struct Followed {
   Encounter overtaking = Encounter::kNone;  // one overtakes the other, until they are past and clear
 
   // That it is a thing and no clutter that lasts (crest, foam, drops): what its segments look like, how often it was seen, and how steadily it stands
-  // or moves. Fitted: logistic regression (DECISIONS.md).
+  // or moves. Fitted: logistic regression; and nothing but things stands still to some centimetres from scan to scan (DECISIONS.md).
   double ThingLogOdds() const {
     constexpr double kLeastStepM = 0.05;
+    constexpr double kStillStepM = 0.05;
+    constexpr int kLeastStill = 2;
+    constexpr int kMostStill = 20;
     const double often = Log(std::min(num_hits, kMostLooks));
-    const double unsteady = Log(std::sqrt(mean_step_m2) + kLeastStepM);
-    return -0.86 + std::clamp(mean_thing, -4.0, 4.0) * (0.90 + 0.31 * often) + 0.77 * often - unsteady * (0.39 + 0.53 * often);
+    const double step_m = std::sqrt(mean_step_m2);
+    const double unsteady = Log(step_m + kLeastStepM);
+    const double still = std::clamp(num_hits - kLeastStill, 0, kMostStill) * Exp(-step_m / kStillStepM);
+    return -0.86 + std::clamp(mean_thing, -4.0, 4.0) * (0.90 + 0.31 * often) + 0.77 * often - unsteady * (0.39 + 0.53 * often) + still;
   }
   void AddLook(double thing_log_odds, double step_m) {
     ++num_hits;

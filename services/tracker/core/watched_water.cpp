@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
@@ -36,7 +37,7 @@ void WatchedWater::Add(const Sight& sight, Utime time) {
   scans_.push_back(std::move(scan));
 }
 
-WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, double near_m) {
+WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m) {
   const int num_columns = static_cast<int>(scan.unwrapped_rad.size());
   const auto column_at = [&scan](double azimuth_rad) {
     const double first_rad = scan.unwrapped_rad.front();
@@ -61,26 +62,32 @@ WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d&
   column = std::min(column_at(azimuth_rad), num_columns - 1);
   if (std::fabs(WrapToPi(azimuth_rad - scan.unwrapped_rad[static_cast<std::size_t>(column)])) > kLostPacketRad) return Look::kNone;
   const double distance_m = (place_m - pose.translation().head<2>()).norm();
-  if (distance_m > scan.max_range_m || distance_m <= near_m) return Look::kNone;
+  if (distance_m > scan.max_range_m || distance_m <= kBesidePlaceM) return Look::kNone;
 
   const auto [sine, cosine] = SinCosOf(azimuth_rad);
   const std::size_t num_rings = scan.ring.size();
-  const auto cell = [num_rings](int of_column, std::size_t ring) { return static_cast<std::size_t>(of_column) * num_rings + ring; };
-  const int beside = static_cast<int>(near_m / distance_m / kTwoPi * num_columns);
+  const auto column_ranges = [&](int of_column) {
+    return std::span(scan.range_cm).subspan(static_cast<std::size_t>(of_column) * num_rings, num_rings);
+  };
   bool is_looked = false;
+  std::vector<std::uint16_t> from_cm(num_rings);
+  std::vector<std::uint16_t> width_cm(num_rings);
   for (std::size_t ring = 0; ring < num_rings; ++ring) {
     const auto& elevation = scan.ring[ring];
     const Eigen::Vector3d direction = pose.linear() * Eigen::Vector3d(elevation.x() * cosine, -elevation.x() * sine, elevation.y());
     const double flat = Hypot(direction.x(), direction.y());
-    const double range_m = flat / kCentimetres * scan.range_cm[cell(column, ring)];
     const double z = pose.translation().z() + distance_m * direction.z() / flat;
-    if (z < top_m && z > kOverWaterM && (range_m == 0.0 || range_m >= distance_m - near_m)) is_looked = true;
-    const auto from_cm = static_cast<std::uint16_t>(std::clamp(kCentimetres * (distance_m - near_m) / flat, 1.0, kMostCm));
-    const auto to_cm = static_cast<std::uint16_t>(std::min(kCentimetres * (distance_m + near_m) / flat, kMostCm));
-    for (int i = -beside; i <= beside; ++i) {
-      const auto range_cm = scan.range_cm[cell((column + i + num_columns) % num_columns, ring)];
-      if (range_cm >= from_cm && range_cm <= to_cm) return Look::kMet;
-    }
+    const double range_m = flat / kCentimetres * column_ranges(column)[ring];
+    if (z > kOverWaterM && z < top_m && (range_m == 0.0 || range_m >= distance_m - kBesidePlaceM)) is_looked = true;
+    from_cm[ring] = static_cast<std::uint16_t>(std::clamp(kCentimetres * (distance_m - kBesidePlaceM) / flat, 1.0, kMostCm));
+    width_cm[ring] = static_cast<std::uint16_t>(std::min(kCentimetres * (distance_m + kBesidePlaceM) / flat, kMostCm) - from_cm[ring]);
+  }
+  const int beside = static_cast<int>(kBesidePlaceM / distance_m / kTwoPi * num_columns);
+  for (int i = -beside; i <= beside; ++i) {
+    const auto ranges_cm = column_ranges((column + i + num_columns) % num_columns);
+    bool is_met = false;
+    for (std::size_t ring = 0; ring < num_rings; ++ring) is_met |= static_cast<std::uint16_t>(ranges_cm[ring] - from_cm[ring]) <= width_cm[ring];
+    if (is_met) return Look::kMet;
   }
   return is_looked ? Look::kEmpty : Look::kNone;
 }
@@ -90,7 +97,7 @@ Watched WatchedWater::At(const Eigen::Vector2d& place_m, double top_m, Utime bef
   for (const auto& scan : scans_) {
     const double before_s = ToSeconds(before - scan.time);
     if (before_s <= 0.0 || before_s > kWatchedS) continue;
-    const auto look = LookAt(scan, place_m, top_m, kBesidePlaceM);
+    const auto look = LookAt(scan, place_m, top_m);
     if (look != Look::kNone) ++watched.num_looks;
     if (look == Look::kEmpty) ++watched.num_empty;
   }

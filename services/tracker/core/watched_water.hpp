@@ -47,7 +47,7 @@ class WatchedWater {
     std::vector<std::uint16_t> range_cm = {};  // [columns x rings] 0: nothing was met
   };
   enum class Look { kNone, kEmpty, kMet };
-  static Look LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, double near_m);
+  static Look LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m);
 
   std::deque<Scan> scans_;
 };
