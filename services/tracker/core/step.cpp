@@ -74,6 +74,7 @@ void Step::Run() {
   FeedLand();
   EndLand();
   Merge();
+  if (is_sight_known_) known_.watched.Add(known_.sight, scan_.end_time);
   Label();
 }
 
@@ -372,11 +373,12 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
     track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
     Place(track);
   }
-  // A crest lives for about a second.
+  if (track.body && !track.is_confirmed) AskWatched(track);
+  // Where nobody knows how the water was watched: a crest lives for about a second.
   constexpr double kCrestThing = 2.0;
   constexpr double kCrestS = 1.0;
-  const bool is_perhaps_crest = track.mean_thing < kCrestThing && ToSeconds(scan_.end_time - track.first) < kCrestS;
-  if (!track.is_confirmed && !is_perhaps_crest && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i))
+  const bool is_perhaps_crest = !track.watched && track.mean_thing < kCrestThing && ToSeconds(scan_.end_time - track.first) < kCrestS;
+  if (!track.is_confirmed && !is_perhaps_crest && track.Probability() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i))
     Confirm(track);
 }
 
@@ -465,6 +467,20 @@ bool Step::IsClear(std::size_t i) const {
   return std::ranges::none_of(known_.tracks, [&](const Followed& other) { return other.body && is_near(other.middle_m, other.radius_m); });
 }
 
+// How the water was watched in which it came up; again where it turns out to be higher. Nothing comes up beside where a known thing was lost: that is
+// the thing.
+void Step::AskWatched(Followed& track) const {
+  constexpr double kHigherM = 0.05;
+  constexpr double kBesideM = 2.0;
+  if (!is_sight_known_ || (track.watched && track.top_m < track.watched_top_m + kHigherM)) return;
+  const bool is_beside = std::ranges::any_of(known_.tracks, [&](const Followed& other) {
+    return other.is_confirmed && !other.is_ended && !other.is_seen_now &&
+           (other.middle_m - track.first_m).norm() < kBesideM + other.radius_m + track.first_radius_m;
+  });
+  track.watched = is_beside ? Watched{} : known_.watched.At(track.first_m, track.top_m, track.first);
+  track.watched_top_m = track.top_m;
+}
+
 void Step::Begin() {
   std::vector<Followed*> confirmed;
   for (auto& track : known_.tracks) {
@@ -504,7 +520,8 @@ void Step::Begin() {
     if (seen.is_sure) {
       track.body.emplace(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
       Place(track);
-      if (IsClear(i) && !IsPerhapsLand(track, i)) {
+      AskWatched(track);
+      if (IsClear(i) && Sigmoid(track.NoCrestLogOdds()) > params_.confirm_probability && !IsPerhapsLand(track, i)) {
         Confirm(track);
         track.log_odds = kClearLogOdds;
       }

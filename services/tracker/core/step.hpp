@@ -16,6 +16,7 @@
 #include "services/tracker/core/sight.hpp"
 #include "services/tracker/core/sightings.hpp"
 #include "services/tracker/core/tracker.hpp"
+#include "services/tracker/core/watched_water.hpp"
 
 namespace lookout::tracker {
 
@@ -35,6 +36,7 @@ struct Known {
   LandMemory land = {};
   LandPieces land_pieces = {};
   ClutterMap clutter = {};
+  WatchedWater watched = {};
   std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
@@ -91,6 +93,7 @@ class Step {
   void Miss(Followed& track);
   void FindInside();
   bool IsClear(std::size_t i) const;
+  void AskWatched(Followed& track) const;
   void Begin();
   void Confirm(Followed& track);
   void FeedLand();

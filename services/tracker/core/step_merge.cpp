@@ -156,6 +156,7 @@ void Step::Join(Followed& one, Followed& other) {
     std::swap(one.parents, other.parents);
     std::swap(one.children, other.children);
     std::swap(one.first, other.first);
+    std::swap(one.watched, other.watched);
   }
   one.is_proven = one.is_proven || other.is_proven;
   one.segment_ids.insert(one.segment_ids.end(), other.segment_ids.begin(), other.segment_ids.end());

@@ -32,6 +32,7 @@ void Step::Settle() {
   constexpr std::size_t kMost = 40;  // tracks, and segments: each pair is tried on all
   const double sd_m = std::exchange(known_.settled_sd_m, 0.0);
   if (sd_m == 0.0) return;
+  known_.watched.Clear();
   std::vector<Eigen::Vector2d> from_m;
   std::vector<Eigen::Vector2d> to_m;
   for (const auto& track : known_.tracks) {

@@ -126,6 +126,7 @@ void Tracker::Reset() {
   memory_->known.land.Clear();
   memory_->known.land_pieces.Clear();
   memory_->known.clutter = {};
+  memory_->known.watched.Clear();
   memory_->standing.ForgetTracks();
   memory_->time.reset();
   memory_->own.reset();
@@ -216,7 +217,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     }
     out.covariance_relative_m2 = out.covariance.topLeftCorner<2, 2>() + track.relative_covariance_m2;
     out.covariance.topLeftCorner<2, 2>() += track.relative_covariance_m2 + track.own_covariance_m2;
-    out.existence_probability = existence;
+    out.existence_probability = track.is_confirmed ? existence : track.Probability();
     out.top_above_water_m = track.top_m;
     out.segment_ids = track.segment_ids;
     std::ranges::sort(out.segment_ids);
