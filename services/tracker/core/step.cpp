@@ -60,10 +60,8 @@ void Step::Run() {
   Settle();
   FindLand();
   Look();
-  FindCommonStep();
   known_.clutter.Begin();
   AssignBodies();
-  AssignLost();
   AssignRest();
   FindInside();
   for (auto& track : known_.tracks) {
@@ -255,36 +253,6 @@ void Step::TakeNearest(std::vector<Near>& pairs, const Take& take) {
   }
 }
 
-// What should have been seen where it was and was not, and what is new beside it: the same, which moved otherwise than was thought.
-void Step::AssignLost() {
-  if (!is_sight_known_ && known_.had_sight) return;
-  constexpr double kLostReachM = 1.5;
-  constexpr double kFasterMps = 3.0;
-  constexpr double kMostReachM = 4.0;
-  constexpr double kMostTimesLarger = 8.0;  // in area
-  std::vector<Near> pairs;
-  for (std::size_t t = 0; t < known_.tracks.size(); ++t) {
-    const auto& track = known_.tracks[t];
-    if (!track.body || !track.is_confirmed || track.is_seen_now || track.is_met || track.mean_thing < 0.0 || track.detection < kDetectionUnknown)
-      continue;
-    const double reach_m = std::min(kMostReachM, kLostReachM + kFasterMps * track.UnseenS(scan_.end_time));
-    const double area_m2 = std::max(0.1, AreaOf(track.outline_m));
-    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-      if (use_[i] != Use::kFree || !sightings_.seen[i].is_sure) continue;
-      if ((middle_m_[i] - track.middle_m).norm() > reach_m + track.radius_m + radius_m_[i]) continue;
-      const double times = std::max(0.1, AreaOf(sightings_.seen[i].outline_m)) / area_m2;
-      if (times > kMostTimesLarger || times < 1.0 / kMostTimesLarger) continue;
-      const double gap_m = GapOf(track.outline_m, sightings_.seen[i].outline_m).distance_m;
-      if (gap_m < reach_m) pairs.push_back({gap_m, t, i});
-    }
-  }
-  TakeNearest(pairs, [&](const Near& pair) {
-    auto& track = known_.tracks[pair.track];
-    track.num_misfits = kMisfitsToRestart;
-    Hit(track, pair.seen, sightings_.seen[pair.seen], SidesOf(pair.seen), true);
-  });
-}
-
 // What is not yet likely takes the nearest of the rest.
 void Step::AssignRest() {
   std::vector<std::size_t> by_east;
@@ -312,7 +280,7 @@ void Step::AssignRest() {
   });
 }
 
-void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides, bool is_lost) {
+void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides) {
   const bool was_land = use_[i] == Use::kLand;
   use_[i] = Use::kTaken;
   track.is_seen_now = true;
@@ -331,7 +299,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
       track.body->Update(seen.outline_m, sides, seen.covariance_relative_m2, range_m, grows);
     } else if (++track.num_misfits >= kMisfitsToRestart) {
       track.num_misfits = 0;
-      track.body->Restart(seen.outline_m, sides, range_m, is_lost || (shift.off >= kMostOff && !shift.is_part));
+      track.body->Restart(seen.outline_m, sides, range_m, shift.off >= kMostOff && !shift.is_part);
     }
     Place(track);
   } else {
@@ -351,8 +319,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   // Of what is known for sure, a way behind something else is no unsteadiness.
   const double scans = track.is_confirmed ? std::max(1.0, ToSeconds(scan_.end_time - track.seen) / std::max(dt_s_, 0.01)) : 1.0;
   const Eigen::Vector2d way_m = middle_m - track.seen_m;
-  const double step_m = std::min(way_m.norm(), (way_m - common_step_m_).norm());
-  track.AddLook(Logit(seen.thing_probability), step_m / scans);
+  track.AddLook(Logit(seen.thing_probability), way_m.norm() / scans);
   track.seen_m = middle_m;
   track.seen_radius_m = radius_m_[i];
   track.sum_returns += seen.num_returns;

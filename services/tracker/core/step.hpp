@@ -78,16 +78,14 @@ class Step {
   void Look();
   void LeaveOutdated();
   void Settle();
-  void FindCommonStep();
   double CostOf(const Followed& track, std::size_t i) const;
   const Sides& SidesOf(std::size_t i) const;
   void AssignBodies();
   template <typename Take>
   void TakeNearest(std::vector<Near>& pairs, const Take& take);
-  void AssignLost();
   void AssignRest();
   void HitWhole(Followed& track, std::size_t i);
-  void Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides, bool is_lost = false);
+  void Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides);
   void ChooseFrame(Followed& track);
   static void Remember(Followed& track, bool is_seen);
   void Miss(Followed& track);
@@ -114,7 +112,6 @@ class Step {
   double dt_s_;
   bool is_sight_known_ = false;
   bool has_left_out_ = false;  // segments, since they are outdated
-  Eigen::Vector2d common_step_m_ = Eigen::Vector2d::Zero();
   Sightings sightings_;
   std::vector<std::int64_t> track_of_piece_;
   std::vector<Use> use_;                             // [seen]

@@ -125,6 +125,7 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   if (IsFoundAgain(one, other)) return kFoundS;
   const bool is_inside = (one.is_inside_now && one.inside_of == other.id) || (other.is_inside_now && other.inside_of == one.id);
   if (!is_inside && (one.middle_m - other.middle_m).norm() > one.radius_m + other.radius_m + kNearM) return kNeverS;
+  if (is_inside) return kFoundS;
   const double area = AreaOf(one.outline_m);
   const double other_area = AreaOf(other.outline_m);
   const Followed& larger = area >= other_area ? one : other;
@@ -132,7 +133,7 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   const auto both = Intersection(one.outline_m, other.outline_m);
   const double shared_m2 = both.empty() ? 0.0 : std::max(1e-9, AreaOf(both));
   // Longer where both are well known, as a boat at a dock with which it is segmented for a while.
-  if ((is_inside || (!both.empty() && shared_m2 >= 0.5 * std::min(area, other_area))) && !(one.is_seen_now && other.is_seen_now)) {
+  if (!both.empty() && shared_m2 >= 0.5 * std::min(area, other_area) && !(one.is_seen_now && other.is_seen_now)) {
     const int num_hits = one.is_confirmed == other.is_confirmed ? std::min(one.num_hits, other.num_hits) : (one.is_confirmed ? one : other).num_hits;
     return std::clamp(kPerHitS * num_hits, kShortestS, kLongestS);
   }

@@ -79,33 +79,4 @@ void Step::Settle() {
   }
 }
 
-// From scan to scan all that stands may step together: the own position and heading settle. Half of it steps by less and half by more.
-void Step::FindCommonStep() {
-  constexpr double kReachM = 1.5;
-  constexpr std::size_t kLeast = 5;
-  constexpr std::size_t kMost = 100;
-  std::vector<Eigen::Vector2d> to_m;
-  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-    if (sightings_.seen[i].is_sure) to_m.push_back(middle_m_[i]);
-  }
-  std::vector<double> east;
-  std::vector<double> north;
-  std::size_t num_asked = 0;
-  for (const auto& track : known_.tracks) {
-    if (!track.is_confirmed || !track.body || track.body->IsMoving(0.5) || track.UnseenS(scan_.end_time) > 1.5 * dt_s_) continue;
-    if (++num_asked > kMost) break;
-    const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - track.seen_m).squaredNorm(); });
-    if (nearest == to_m.end() || (*nearest - track.seen_m).norm() >= kReachM) continue;
-    east.push_back(nearest->x() - track.seen_m.x());
-    north.push_back(nearest->y() - track.seen_m.y());
-  }
-  if (east.size() < kLeast) return;
-  const auto median = [](std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-  };
-  common_step_m_ = {median(east), median(north)};
-}
-
 }  // namespace lookout::tracker
