@@ -54,8 +54,10 @@ void Step::Run() {
   is_sight_known_ = known_.sight.Begin(scan_);
   known_.had_sight = known_.had_sight || is_sight_known_;
   if (!scan_.own) return;
-  sightings_ = SightingsOf(scan_, known_.sight, known_.tracks, known_.ledger);
-  FindPlaces();
+  auto sightings = SightingsOf(scan_, known_.sight, known_.tracks, known_.ledger);
+  sightings_ = std::move(sightings.all);
+  sighting_of_piece_ = std::move(sightings.of_piece);
+  sighting_of_segment_ = std::move(sightings.of_segment);
   LeaveOutdated();
   Settle();
   FindLand();
@@ -78,18 +80,18 @@ void Step::Run() {
 
 // From what was seen to the segments and pieces that it is made of.
 void Step::Label() {
-  std::vector<std::int64_t> track_of(sightings_.seen.size(), kNoTrack);
+  std::vector<std::int64_t> track_of(sightings_.size(), kNoTrack);
   for (const std::int32_t number : land_ids_) track_of[static_cast<std::size_t>(number - 1)] = 0;
   for (auto& track : known_.tracks) {
     for (const std::int32_t number : track.segment_ids) track_of[static_cast<std::size_t>(number - 1)] = track.PublicId();
     track.segment_ids.clear();
   }
   const auto of = [&track_of](std::int32_t seen) { return seen < 0 ? kNoTrack : track_of[static_cast<std::size_t>(seen)]; };
-  for (const std::int32_t seen : sightings_.of_piece) track_of_piece_.push_back(of(seen));
+  for (const std::int32_t seen : sighting_of_piece_) track_of_piece_.push_back(of(seen));
   land_ids_.clear();
   std::map<std::int64_t, std::vector<std::int32_t>> segments_of;
-  for (std::size_t i = 0; i < sightings_.of_segment.size(); ++i) {
-    const std::int64_t id = of(sightings_.of_segment[i]);
+  for (std::size_t i = 0; i < sighting_of_segment_.size(); ++i) {
+    const std::int64_t id = of(sighting_of_segment_[i]);
     const auto segment = static_cast<std::int32_t>(i) + 1;
     if (id == 0) land_ids_.push_back(segment);
     if (id != 0 && id != kNoTrack) segments_of[id].push_back(segment);
@@ -123,19 +125,6 @@ void Step::Place(Followed& track) {
   track.radius_m = RadiusOf(track.outline_m, track.middle_m);
 }
 
-void Step::FindPlaces() {
-  use_.assign(sightings_.seen.size(), Use::kFree);
-  middle_m_.clear();
-  radius_m_.clear();
-  for (const auto& seen : sightings_.seen) {
-    middle_m_.push_back(MiddleOf(seen.outline_m));
-    radius_m_.push_back(RadiusOf(seen.outline_m, middle_m_.back()));
-  }
-  sides_.assign(sightings_.seen.size(), std::nullopt);
-  ranges_m_.clear();
-  for (const auto& middle_m : middle_m_) ranges_m_.push_back((middle_m - known_.sight.from_m()).norm());
-}
-
 void Step::Look() {
   for (auto& track : known_.tracks) {
     track.is_met = false;
@@ -155,32 +144,33 @@ void Step::Look() {
   }
 }
 
-double Step::CostOf(const Followed& track, std::size_t i) const {
+double Step::CostOf(const Followed& track, std::size_t i) {
   constexpr double kWidestGateM = 12.5;  // of what follows; most pairs are farther apart
-  if ((middle_m_[i] - track.middle_m).norm() > kWidestGateM + track.radius_m + radius_m_[i]) return kMostCost;
-  const auto& seen = sightings_.seen[i];
+  if ((sightings_[i].middle_m - track.middle_m).norm() > kWidestGateM + track.radius_m + sightings_[i].radius_m) return kMostCost;
+  const auto& seen = sightings_[i].seen;
   const Eigen::Matrix4d covariance = track.body->covariance();
   const double sd = std::min(3.0, std::sqrt(std::max(covariance(0, 0), covariance(1, 1))));
   const double noise = std::sqrt(0.5 * seen.covariance_relative_m2.trace());
   const double gate = 0.5 + 2.0 * sd + std::min(3.0 * std::max(0.0, noise - 0.3), 6.0);
-  if ((middle_m_[i] - track.middle_m).norm() > gate + track.radius_m + radius_m_[i]) return kMostCost;
+  if ((sightings_[i].middle_m - track.middle_m).norm() > gate + track.radius_m + sightings_[i].radius_m) return kMostCost;
   const double gap = GapOf(track.outline_m, seen.outline_m).distance_m;
   if (gap > gate) return kMostCost;
   const double area_track = std::max(0.1, AreaOf(track.outline_m));
   const double area_seen = std::max(0.1, AreaOf(seen.outline_m));
   const auto both = Intersection(track.outline_m, seen.outline_m);
   const double overlap = both.empty() ? 0.0 : std::min(1.0, std::max(AreaOf(both), 0.1) / std::min(area_track, area_seen));
-  const auto shift = track.body->ShiftOf(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
+  const auto shift = track.body->ShiftOf(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, sightings_[i].range_m);
   return 0.1 * std::min(shift.off, 30.0) + 0.1 * std::min(shift.misfit, 20.0) + (1.0 - overlap) + 0.1 * std::abs(Log(area_seen / area_track));
 }
 
 // Computed once for a segment, where it is asked for.
-const Sides& Step::SidesOf(std::size_t i) const {
-  if (!sides_[i]) {
-    sides_[i] = known_.sight.SidesOf(sightings_.seen[i].outline_m, sightings_.seen[i].top_above_water_m);
-    sides_[i]->before_s = std::clamp(ToSeconds(scan_.end_time - sightings_.seen[i].time), 0.0, kLongestScanS);
+const Sides& Step::SidesOf(std::size_t i) {
+  auto& sighting = sightings_[i];
+  if (!sighting.sides) {
+    sighting.sides = known_.sight.SidesOf(sighting.seen.outline_m, sighting.seen.top_above_water_m);
+    sighting.sides->before_s = std::clamp(ToSeconds(scan_.end_time - sighting.seen.time), 0.0, kLongestScanS);
   }
-  return *sides_[i];
+  return *sighting.sides;
 }
 
 void Step::AssignBodies() {
@@ -190,18 +180,20 @@ void Step::AssignBodies() {
   }
   std::vector<Candidate> candidates;
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
+    for (std::size_t i = 0; i < sightings_.size(); ++i) {
       // Land takes no part, unless it is the very thing that was seen there before.
-      const bool may_be = use_[i] == Use::kFree || (use_[i] == Use::kLand && known_.tracks[rows[row]].is_confirmed &&
-                                                    radius_m_[i] < 2.0 * known_.tracks[rows[row]].radius_m + 1.0);
+      const bool may_be =
+          sightings_[i].use == Sighting::Use::kFree || (sightings_[i].use == Sighting::Use::kLand && known_.tracks[rows[row]].is_confirmed &&
+                                                        sightings_[i].radius_m < 2.0 * known_.tracks[rows[row]].radius_m + 1.0);
       if (!may_be) continue;
-      const double cost = CostOf(known_.tracks[rows[row]], i) + (use_[i] == Use::kLand ? 1.0 : 0.0);
+      const double cost = CostOf(known_.tracks[rows[row]], i) + (sightings_[i].use == Sighting::Use::kLand ? 1.0 : 0.0);
       if (cost < kMostCost) candidates.push_back({static_cast<std::int32_t>(row), static_cast<std::int32_t>(i), cost});
     }
   }
-  const auto column_of = Assign(static_cast<std::int32_t>(rows.size()), static_cast<std::int32_t>(sightings_.seen.size()), candidates, kMostCost);
+  const auto column_of = Assign(static_cast<std::int32_t>(rows.size()), static_cast<std::int32_t>(sightings_.size()), candidates, kMostCost);
   for (const auto column : column_of) {
-    if (column >= 0 && use_[static_cast<std::size_t>(column)] == Use::kFree) use_[static_cast<std::size_t>(column)] = Use::kAssigned;
+    if (column >= 0 && sightings_[static_cast<std::size_t>(column)].use == Sighting::Use::kFree)
+      sightings_[static_cast<std::size_t>(column)].use = Sighting::Use::kAssigned;
   }
   for (std::size_t row = 0; row < rows.size(); ++row) {
     if (column_of[row] >= 0) HitWhole(known_.tracks[rows[row]], static_cast<std::size_t>(column_of[row]));
@@ -212,25 +204,25 @@ void Step::AssignBodies() {
 void Step::HitWhole(Followed& track, std::size_t i) {
   std::vector<std::size_t> others;
   const auto around = RectangleAround(track.outline_m);
-  if (track.is_confirmed && use_[i] == Use::kAssigned && around.width_m < kWidestBoatM && around.length_m < kLongestWholeM) {
-    for (std::size_t k = 0; k < sightings_.seen.size(); ++k) {
-      if (use_[k] != Use::kFree || sightings_.seen[k].thing_probability < 0.5 ||
-          (middle_m_[k] - track.middle_m).norm() > track.radius_m + kPieceBesideM)
+  if (track.is_confirmed && sightings_[i].use == Sighting::Use::kAssigned && around.width_m < kWidestBoatM && around.length_m < kLongestWholeM) {
+    for (std::size_t k = 0; k < sightings_.size(); ++k) {
+      if (sightings_[k].use != Sighting::Use::kFree || sightings_[k].seen.thing_probability < 0.5 ||
+          (sightings_[k].middle_m - track.middle_m).norm() > track.radius_m + kPieceBesideM)
         continue;
-      if (std::ranges::all_of(sightings_.seen[k].outline_m, [&](const auto& corner) {
+      if (std::ranges::all_of(sightings_[k].seen.outline_m, [&](const auto& corner) {
             return Contains(track.outline_m, corner) || GapOf(track.outline_m, std::array{corner}).distance_m < kPieceBesideM;
           }))
         others.push_back(k);
     }
   }
   if (others.empty()) {
-    Hit(track, i, sightings_.seen[i], SidesOf(i));
+    Hit(track, i, sightings_[i].seen, SidesOf(i));
     return;
   }
-  Seen whole = sightings_.seen[i];
+  Seen whole = sightings_[i].seen;
   for (const auto k : others) {
-    const auto& piece = sightings_.seen[k];
-    use_[k] = Use::kTaken;
+    const auto& piece = sightings_[k].seen;
+    sightings_[k].use = Sighting::Use::kTaken;
     whole.outline_m.insert(whole.outline_m.end(), piece.outline_m.begin(), piece.outline_m.end());
     whole.num_returns += piece.num_returns;
     whole.top_above_water_m = std::max(whole.top_above_water_m, piece.top_above_water_m);
@@ -249,17 +241,17 @@ template <typename Take>
 void Step::TakeNearest(std::vector<Near>& pairs, const Take& take) {
   std::ranges::sort(pairs, {}, [](const Near& near) { return std::tuple(near.distance_m, near.track, near.seen); });
   for (const auto& pair : pairs) {
-    if (!known_.tracks[pair.track].is_seen_now && use_[pair.seen] == Use::kFree) take(pair);
+    if (!known_.tracks[pair.track].is_seen_now && sightings_[pair.seen].use == Sighting::Use::kFree) take(pair);
   }
 }
 
 // What is not yet likely takes the nearest of the rest.
 void Step::AssignRest() {
   std::vector<std::size_t> by_east;
-  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-    if (use_[i] == Use::kFree) by_east.push_back(i);
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    if (sightings_[i].use == Sighting::Use::kFree) by_east.push_back(i);
   }
-  const auto east = [this](std::size_t i) { return middle_m_[i].x(); };
+  const auto east = [this](std::size_t i) { return sightings_[i].middle_m.x(); };
   std::ranges::sort(by_east, [&](std::size_t a, std::size_t b) { return std::pair(east(a), a) < std::pair(east(b), b); });
   std::vector<Near> pairs;
   for (std::size_t t = 0; t < known_.tracks.size(); ++t) {
@@ -270,27 +262,27 @@ void Step::AssignRest() {
     const double far = reach + track.radius_m + 2.0;
     auto first = std::ranges::lower_bound(by_east, track.middle_m.x() - far, {}, east);
     for (; first != by_east.end() && east(*first) <= track.middle_m.x() + far; ++first) {
-      const double distance = (middle_m_[*first] - track.middle_m).norm() - track.radius_m - radius_m_[*first];
-      if (distance < reach) pairs.push_back({std::max(0.0, distance) + 0.01 * (middle_m_[*first] - track.middle_m).norm(), t, *first});
+      const double distance = (sightings_[*first].middle_m - track.middle_m).norm() - track.radius_m - sightings_[*first].radius_m;
+      if (distance < reach) pairs.push_back({std::max(0.0, distance) + 0.01 * (sightings_[*first].middle_m - track.middle_m).norm(), t, *first});
     }
   }
   TakeNearest(pairs, [&](const Near& pair) {
-    Hit(known_.tracks[pair.track], pair.seen, sightings_.seen[pair.seen], SidesOf(pair.seen));
-    known_.clutter.Add(ToVessel(middle_m_[pair.seen]));
+    Hit(known_.tracks[pair.track], pair.seen, sightings_[pair.seen].seen, SidesOf(pair.seen));
+    known_.clutter.Add(ToVessel(sightings_[pair.seen].middle_m));
   });
 }
 
 void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides) {
-  const bool was_land = use_[i] == Use::kLand;
-  use_[i] = Use::kTaken;
+  const bool was_land = sightings_[i].use == Sighting::Use::kLand;
+  sightings_[i].use = Sighting::Use::kTaken;
   track.is_seen_now = true;
   if (track.body && track.body->IsMoving(kMovesProbability)) ++track.num_moving;
   const Eigen::Vector2d before_m = track.middle_m;
-  const double range_m = ranges_m_[i];
+  const double range_m = sightings_[i].range_m;
   if (track.body) {
     // Where another that is known lies in what is seen, this is not the outline of one.
     const bool grows = !was_land && std::ranges::none_of(known_.tracks, [&](const Followed& other) {
-      return other.is_confirmed && other.id != track.id && IsWithin(other.middle_m, middle_m_[i], radius_m_[i]) &&
+      return other.is_confirmed && other.id != track.id && IsWithin(other.middle_m, sightings_[i].middle_m, sightings_[i].radius_m) &&
              Contains(seen.outline_m, other.middle_m);
     });
     const auto shift = track.body->ShiftOf(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
@@ -304,14 +296,14 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
     Place(track);
   } else {
     track.outline_m = seen.outline_m;
-    track.middle_m = middle_m_[i];
-    track.radius_m = radius_m_[i];
+    track.middle_m = sightings_[i].middle_m;
+    track.radius_m = sightings_[i].radius_m;
   }
   // Evidence: as dense as its place is known, against clutter there.
   const double sd = std::max(track.body ? 0.3 : 0.5, std::sqrt(0.5 * seen.covariance_relative_m2.trace()));
   const double off = (track.middle_m - before_m).norm();
   const double density = Exp(-0.5 * std::min(off * off / (sd * sd), 50.0)) / (kTwoPi * sd * sd);
-  const double clutter = known_.clutter.DensityAt(ToVessel(middle_m_[i]));
+  const double clutter = known_.clutter.DensityAt(ToVessel(sightings_[i].middle_m));
   const double detection = std::max(track.detection, 0.1);
   track.log_odds += Log(1.0 - detection + detection * density / clutter);
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
@@ -321,7 +313,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const Eigen::Vector2d way_m = middle_m - track.seen_m;
   track.AddLook(Logit(seen.thing_probability), way_m.norm() / scans);
   track.seen_m = middle_m;
-  track.seen_radius_m = radius_m_[i];
+  track.seen_radius_m = sightings_[i].radius_m;
   track.sum_returns += seen.num_returns;
   track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
   track.seen = track.seen_alone = scan_.end_time;
@@ -395,21 +387,21 @@ void Step::Miss(Followed& track) {
 void Step::FindInside() {
   for (auto& track : known_.tracks) {
     if (track.is_seen_now || !track.body) continue;
-    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-      if (use_[i] == Use::kFree || use_[i] == Use::kLeftOut) continue;
-      if ((middle_m_[i] - track.middle_m).norm() > radius_m_[i] + track.radius_m) continue;
-      const auto both = Intersection(sightings_.seen[i].outline_m, track.outline_m);
+    for (std::size_t i = 0; i < sightings_.size(); ++i) {
+      if (sightings_[i].use == Sighting::Use::kFree || sightings_[i].use == Sighting::Use::kLeftOut) continue;
+      if ((sightings_[i].middle_m - track.middle_m).norm() > sightings_[i].radius_m + track.radius_m) continue;
+      const auto both = Intersection(sightings_[i].seen.outline_m, track.outline_m);
       const double area = std::max(0.05, AreaOf(track.outline_m));
       if (both.empty() || AreaOf(both) < 0.5 * area) continue;
       // Something of what was seen must lie in it.
       if (!track.is_met &&
-          std::ranges::none_of(sightings_.places_m[i], [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); }))
+          std::ranges::none_of(sightings_[i].places_m, [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); }))
         continue;
       track.is_inside_now = true;
       track.seen = scan_.end_time;
       track.inside_of = 0;
       for (const auto& other : known_.tracks) {
-        if (other.is_seen_now && std::ranges::find(other.segment_ids, sightings_.seen[i].segment_id) != other.segment_ids.end())
+        if (other.is_seen_now && std::ranges::find(other.segment_ids, sightings_[i].seen.segment_id) != other.segment_ids.end())
           track.inside_of = other.id;
       }
       if (track.inside_of == 0) track.body->Fade(dt_s_);
@@ -423,13 +415,13 @@ bool Step::IsClear(std::size_t i) const {
   constexpr int kLeastReturns = 20;
   constexpr double kLeastThing = 0.98;
   constexpr double kAloneM = 5.0;
-  const auto& seen = sightings_.seen[i];
+  const auto& seen = sightings_[i].seen;
   if (seen.num_returns < kLeastReturns || seen.thing_probability < kLeastThing) return false;
   const auto is_near = [&](const Eigen::Vector2d& other_m, double radius_m) {
-    return (other_m - middle_m_[i]).norm() < kAloneM + radius_m + radius_m_[i];
+    return (other_m - sightings_[i].middle_m).norm() < kAloneM + radius_m + sightings_[i].radius_m;
   };
-  for (std::size_t k = 0; k < sightings_.seen.size(); ++k) {
-    if (k != i && sightings_.seen[k].is_sure && !sightings_.seen[k].is_land && is_near(middle_m_[k], radius_m_[k])) return false;
+  for (std::size_t k = 0; k < sightings_.size(); ++k) {
+    if (k != i && sightings_[k].seen.is_sure && !sightings_[k].seen.is_land && is_near(sightings_[k].middle_m, sightings_[k].radius_m)) return false;
   }
   return std::ranges::none_of(known_.tracks, [&](const Followed& other) { return other.body && is_near(other.middle_m, other.radius_m); });
 }
@@ -455,13 +447,13 @@ void Step::Begin() {
   }
   // Where there are too many, what is sure comes first.
   std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-    if (use_[i] == Use::kFree) order.push_back(i);
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    if (sightings_[i].use == Sighting::Use::kFree) order.push_back(i);
   }
-  std::stable_partition(order.begin(), order.end(), [this](std::size_t i) { return sightings_.seen[i].is_sure; });
+  std::stable_partition(order.begin(), order.end(), [this](std::size_t i) { return sightings_[i].seen.is_sure; });
   for (const std::size_t i : order) {
-    const auto& seen = sightings_.seen[i];
-    known_.clutter.Add(ToVessel(middle_m_[i]));
+    const auto& seen = sightings_[i].seen;
+    known_.clutter.Add(ToVessel(sightings_[i].middle_m));
     if (known_.tracks.size() >= kMostTracks) {
       ++known_.num_over_limit;
       continue;
@@ -470,8 +462,8 @@ void Step::Begin() {
     track.id = known_.next_id++;
     track.first = track.seen = track.seen_alone = scan_.end_time;
     track.outline_m = seen.outline_m;
-    track.middle_m = track.seen_m = track.first_m = middle_m_[i];
-    track.radius_m = track.seen_radius_m = track.first_radius_m = radius_m_[i];
+    track.middle_m = track.seen_m = track.first_m = sightings_[i].middle_m;
+    track.radius_m = track.seen_radius_m = track.first_radius_m = sightings_[i].radius_m;
     track.top_m = seen.top_above_water_m;
     track.AddLook(Logit(seen.thing_probability), 0.0);
     track.sum_returns = seen.num_returns;
@@ -485,7 +477,7 @@ void Step::Begin() {
       }
     }
     if (seen.is_sure) {
-      track.body.emplace(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
+      track.body.emplace(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, sightings_[i].range_m);
       Place(track);
       AskWatched(track);
       if (IsClear(i) && Sigmoid(track.NoCrestLogOdds()) > params_.confirm_probability && !IsPerhapsLand(track, i)) {

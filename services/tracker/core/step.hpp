@@ -66,11 +66,9 @@ class Step {
     std::size_t track;
     std::size_t seen;
   };
-  enum class Use { kFree, kLand, kAssigned, kTaken, kLeftOut };
   Eigen::Vector2d ToVessel(const Eigen::Vector2d& place_m) const;
   void Predict();
   static void Place(Followed& track);
-  void FindPlaces();
   void FindLand();
   void FollowLandPieces();
   bool IsLand(const Followed& track) const;
@@ -78,8 +76,8 @@ class Step {
   void Look();
   void LeaveOutdated();
   void Settle();
-  double CostOf(const Followed& track, std::size_t i) const;
-  const Sides& SidesOf(std::size_t i) const;
+  double CostOf(const Followed& track, std::size_t i);
+  const Sides& SidesOf(std::size_t i);
   void AssignBodies();
   template <typename Take>
   void TakeNearest(std::vector<Near>& pairs, const Take& take);
@@ -112,15 +110,10 @@ class Step {
   double dt_s_;
   bool is_sight_known_ = false;
   bool has_left_out_ = false;  // segments, since they are outdated
-  Sightings sightings_;
+  std::vector<Sighting> sightings_;
+  std::vector<std::int32_t> sighting_of_piece_;
+  std::vector<std::int32_t> sighting_of_segment_;
   std::vector<std::int64_t> track_of_piece_;
-  std::vector<Use> use_;                             // [seen]
-  std::vector<Eigen::Vector2d> middle_m_;            // [seen]
-  std::vector<double> radius_m_;                     // [seen]
-  mutable std::vector<std::optional<Sides>> sides_;  // [seen]
-  std::vector<double> ranges_m_;                     // [seen] from the lidar
-  std::vector<double> land_share_;                   // [seen]
-  std::vector<bool> seems_moving_;                   // [seen] land that may be none: it is not remembered
   std::vector<std::int32_t> land_ids_;
   std::vector<std::pair<std::int64_t, std::int64_t>> merged_;
 };

@@ -31,10 +31,10 @@ bool Step::Touch(const Followed& one, const Followed& other) const {
   constexpr std::size_t kMostTouching = 200;
   const auto places = [this](const Followed& track) {
     std::vector<Eigen::Vector2d> found;
-    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-      if (std::ranges::find(track.segment_ids, sightings_.seen[i].segment_id) == track.segment_ids.end()) continue;
-      const std::size_t step = 1 + sightings_.places_m[i].size() / kMostTouching;
-      for (std::size_t k = 0; k < sightings_.places_m[i].size(); k += step) found.push_back(sightings_.places_m[i][k]);
+    for (std::size_t i = 0; i < sightings_.size(); ++i) {
+      if (std::ranges::find(track.segment_ids, sightings_[i].seen.segment_id) == track.segment_ids.end()) continue;
+      const std::size_t step = 1 + sightings_[i].places_m.size() / kMostTouching;
+      for (std::size_t k = 0; k < sightings_[i].places_m.size(); k += step) found.push_back(sightings_[i].places_m[k]);
     }
     return found;
   };

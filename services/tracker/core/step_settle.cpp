@@ -14,9 +14,9 @@ void Step::LeaveOutdated() {
   const auto own_m2 = [](const Pose& pose) { return std::max(0.0, pose.covariance(0, 0) + pose.covariance(1, 1)); };
   const double limit_m2 = kTimes * own_m2(*scan_.own) + kLeastM2;
   if (scan_.own_at_start && own_m2(*scan_.own_at_start) <= limit_m2) return;
-  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-    if ((sightings_.seen[i].covariance_m2 - sightings_.seen[i].covariance_relative_m2).trace() <= limit_m2) continue;
-    use_[i] = Use::kLeftOut;
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    if ((sightings_[i].seen.covariance_m2 - sightings_[i].seen.covariance_relative_m2).trace() <= limit_m2) continue;
+    sightings_[i].use = Sighting::Use::kLeftOut;
     has_left_out_ = true;
     ++known_.num_outdated;
   }
@@ -38,8 +38,9 @@ void Step::Settle() {
   for (const auto& track : known_.tracks) {
     if (track.body && track.UnseenS(scan_.end_time) < 1.5 * dt_s_ && from_m.size() < kMost) from_m.push_back(track.seen_m);
   }
-  for (std::size_t i = 0; i < sightings_.seen.size() && to_m.size() < kMost; ++i) {
-    if (use_[i] == Use::kFree && sightings_.seen[i].is_sure && !sightings_.seen[i].is_land) to_m.push_back(middle_m_[i]);
+  for (std::size_t i = 0; i < sightings_.size() && to_m.size() < kMost; ++i) {
+    if (sightings_[i].use == Sighting::Use::kFree && sightings_[i].seen.is_sure && !sightings_[i].seen.is_land)
+      to_m.push_back(sightings_[i].middle_m);
   }
   const auto nearest_to = [&](const Eigen::Vector2d& place_m) {
     const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - place_m).squaredNorm(); });
