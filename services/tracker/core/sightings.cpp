@@ -70,13 +70,13 @@ std::vector<Ledger::Frame> FramesOf(const std::deque<Followed>& tracks, std::vec
 
 // The frame of what moves in whose outline most of a piece lies.
 std::int32_t FrameOf(const PieceReturns& piece, const std::vector<const Followed*>& owners) {
-  constexpr double kBesideM = 0.3;
+  constexpr double kBesideOutlineM = 0.3;
   for (std::size_t k = 0; k < owners.size(); ++k) {
     const auto& track = *owners[k];
     std::size_t num_in = 0;
     for (const auto& place_m : piece.places_m) {
-      if ((place_m - track.middle_m).norm() > track.radius_m + kBesideM) continue;
-      if (Contains(track.outline_m, place_m) || GapOf(track.outline_m, std::array{place_m}).distance_m < kBesideM) ++num_in;
+      if ((place_m - track.middle_m).norm() > track.radius_m + kBesideOutlineM) continue;
+      if (Contains(track.outline_m, place_m) || GapOf(track.outline_m, std::array{place_m}).distance_m < kBesideOutlineM) ++num_in;
     }
     if (2 * num_in > piece.places_m.size()) return static_cast<std::int32_t>(k) + 1;
   }

@@ -53,7 +53,10 @@ void Step::Run() {
   Predict();
   is_sight_known_ = known_.sight.Begin(scan_);
   known_.had_sight = known_.had_sight || is_sight_known_;
-  if (!scan_.own) return;
+  if (!scan_.own) {
+    EndUnseen();
+    return;
+  }
   auto sightings = SightingsOf(scan_, known_.sight, known_.tracks, known_.ledger);
   sightings_ = std::move(sightings.all);
   sighting_of_piece_ = std::move(sightings.of_piece);
@@ -74,8 +77,25 @@ void Step::Run() {
   FeedLand();
   EndLand();
   Merge();
+  EndUnseen();
   if (is_sight_known_) known_.watched.Add(known_.sight, scan_.end_time);
   Label();
+}
+
+void Step::EndUnseen() {
+  constexpr double kLongestS = 30.0;  // sooner where it was not followed for as long
+  constexpr double kShortestS = 2.0;
+  constexpr int kHardlyKnownHits = 5;
+  constexpr double kHardlyKnownS = 0.7;
+  constexpr double kTentativeS = 1.0;
+  constexpr double kLeastOfConfirmed = 0.05;
+  for (auto& track : known_.tracks) {
+    const double known_s = std::clamp(ToSeconds(track.seen - track.first), kShortestS, kLongestS);
+    const double end_s = !track.is_confirmed ? kTentativeS : track.num_hits < kHardlyKnownHits ? kHardlyKnownS : known_s;
+    if (track.UnseenS(scan_.end_time) > end_s || track.Existence() < (track.is_confirmed ? kLeastOfConfirmed : params_.end_probability) ||
+        (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
+      track.is_ended = true;
+  }
 }
 
 // From what was seen to the segments and pieces that it is made of.
@@ -99,6 +119,15 @@ void Step::Label() {
   for (auto& track : known_.tracks) {
     if (const auto found = segments_of.find(track.PublicId()); found != segments_of.end()) track.segment_ids = std::move(found->second);
   }
+}
+
+Picture Step::TakePicture() {
+  Picture picture;
+  picture.is_sight_known = is_sight_known_;
+  picture.land_segment_ids = std::move(land_ids_);
+  picture.track_of_piece = std::move(track_of_piece_);
+  picture.merged = std::move(merged_);
+  return picture;
 }
 
 Eigen::Vector2d Step::ToVessel(const Eigen::Vector2d& place_m) const {

@@ -54,11 +54,8 @@ class Step {
 
   void Run();
 
-  /// As Picture has it.
-  const std::vector<std::int64_t>& track_of_piece() const { return track_of_piece_; }
-  bool is_sight_known() const { return is_sight_known_; }
-  const std::vector<std::int32_t>& land_ids() const { return land_ids_; }
-  const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
+  /// All but tracks and what follows of them.
+  Picture TakePicture();
 
  private:
   struct Near {
@@ -95,6 +92,7 @@ class Step {
   void FeedLand();
   void EndLand();
   void Merge();
+  void EndUnseen();
   void Label();
   bool Touch(const Followed& one, const Followed& other) const;
   bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const;
