@@ -26,16 +26,17 @@ struct Wall {
   Eigen::Vector2d to_m;
   double top_m = 0.0;
   int thing = 0;
+  double reflects = 1.0;  // this share of the beams
 };
 using Walls = std::vector<Wall>;
 
-inline Walls Box(const Eigen::Vector2d& middle_m, double east_m, double north_m, double top_m, int thing) {
+inline Walls Box(const Eigen::Vector2d& middle_m, double east_m, double north_m, double top_m, int thing, double reflects = 1.0) {
   const Eigen::Vector2d half(0.5 * east_m, 0.5 * north_m);
   const Eigen::Vector2d a = middle_m - half;
   const Eigen::Vector2d b(middle_m.x() + half.x(), middle_m.y() - half.y());
   const Eigen::Vector2d c = middle_m + half;
   const Eigen::Vector2d d(middle_m.x() - half.x(), middle_m.y() + half.y());
-  return {{a, b, top_m, thing}, {b, c, top_m, thing}, {c, d, top_m, thing}, {d, a, top_m, thing}};
+  return {{a, b, top_m, thing, reflects}, {b, c, top_m, thing, reflects}, {c, d, top_m, thing, reflects}, {d, a, top_m, thing, reflects}};
 }
 
 inline Walls operator+(Walls one, const Walls& other) {
@@ -71,6 +72,7 @@ inline ScanInput Look(int scan, const Eigen::Vector2d& own_m, const Walls& walls
     sweep.azimuth_offset_rad.push_back(0.0F);
   }
   std::uniform_real_distribution<double> noise_m(-0.03, 0.03);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
   struct Segment {
     std::vector<Eigen::Vector2d> places_m;
     Called called;
@@ -95,7 +97,7 @@ inline ScanInput Look(int scan, const Eigen::Vector2d& own_m, const Walls& walls
       for (const auto& [distance_m, wall] : met) {
         const double z = kLidarM + distance_m * std::tan(elevation_rad);
         if (z < 0.0) break;  // the water does not reflect
-        if (z > wall->top_m) continue;
+        if (z > wall->top_m || (wall->reflects < 1.0 && share(random) >= wall->reflects)) continue;
         const double seen_m = distance_m + noise_m(random);
         const Eigen::Vector2d place_m = own_m + seen_m * direction;
         called = segmenter(wall->thing, place_m);
