@@ -164,6 +164,84 @@ TEST(Body, TakesItsOutlineAlongInATurn) {
   }
 }
 
+TEST(Body, FrameMovesWithIt) {
+  std::mt19937_64 random(6);
+  Box box{{-10.0, 20.0}, 0.3};
+  Body body(box.SeenFrom({0.0, 0.0}), {}, kNoise, 20.0);
+  const auto bow_m = [&box] { return box.Corners()[1]; };
+  Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
+  for (int scan = 0; scan < 120; ++scan) {
+    box.middle_m += 3.0 * kScanS * Eigen::Vector2d(std::cos(box.course_rad), std::sin(box.course_rad));
+    body.Predict(kScanS);
+    body.Update(Shaken(box.SeenFrom({0.0, 0.0}), 0.03, random), {}, kNoise, box.middle_m.norm(), true);
+    if (scan == 50) place_m = body.Frame().inverse() * bow_m();
+    if (scan < 50) continue;
+    EXPECT_LT((body.Frame() * place_m - bow_m()).norm(), 0.3) << scan;
+  }
+}
+
+// At first its bow only: the middle of what is known of it goes aft, the boat does not.
+TEST(Body, FrameStaysWhereMoreOfItComesIntoSight) {
+  Box box{{-20.0, 15.0}, 0.0, 8.0};
+  const auto seen_m = [&box](double length_m) {
+    return Box{box.middle_m + Eigen::Vector2d(4.0 - 0.5 * length_m, 0.0), 0.0, length_m}.SeenFrom({0.0, 0.0});
+  };
+  Body body(seen_m(3.0), {}, kNoise, 15.0);
+  Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
+  double middle_m = 0.0;
+  for (int scan = 0; scan < 120; ++scan) {
+    box.middle_m.x() += 3.0 * kScanS;
+    body.Predict(kScanS);
+    if (scan == 60) {
+      place_m = body.Frame().inverse() * box.middle_m;
+      middle_m = body.center_m().x() - box.middle_m.x();
+      body.Include(seen_m(8.0));
+      EXPECT_LT((body.Frame() * place_m - box.middle_m).norm(), 1e-9);
+    }
+    body.Update(seen_m(scan < 60 ? 3.0 : 8.0), {}, kNoise, 15.0, true);
+    if (scan < 60) continue;
+    EXPECT_LT((body.Frame() * place_m - box.middle_m).norm(), 0.3) << scan;
+  }
+  EXPECT_LT(body.center_m().x() - box.middle_m.x(), middle_m - 1.5);
+}
+
+TEST(Body, HasMovedByItsWayWhereItMovesAndByNothingWhereItStands) {
+  for (const double speed_mps : {0.0, 3.0}) {
+    std::mt19937_64 random(7);
+    Box box{{-15.0, 20.0}, 0.0};
+    Body body(box.SeenFrom({0.0, 0.0}), {}, kNoise, 20.0);
+    EXPECT_EQ(body.moved_m(), 0.0);
+    for (int scan = 0; scan < 100; ++scan) {
+      box.middle_m.x() += speed_mps * kScanS;
+      body.Predict(kScanS);
+      body.Update(Shaken(box.SeenFrom({0.0, 0.0}), 0.03, random), {}, kNoise, box.middle_m.norm(), true);
+    }
+    EXPECT_NEAR(body.moved_m(), speed_mps * 10.0, 0.5);
+    // Where all of the map was elsewhere nothing has moved.
+    const double moved_m = body.moved_m();
+    const Eigen::Vector2d at_m = body.Frame().translation();
+    body.Translate({7.0, -5.0});
+    EXPECT_NEAR(body.moved_m(), moved_m, 1e-9);
+    EXPECT_NEAR((body.Frame().translation() - at_m - Eigen::Vector2d(7.0, -5.0)).norm(), 0.0, 1e-9);
+  }
+}
+
+TEST(Body, FrameStaysWhereTheOutlineIsAnother) {
+  Box box{{-10.0, 20.0}, 0.0};
+  Body body(box.SeenFrom({0.0, 0.0}), {}, kNoise, 20.0);
+  for (int scan = 0; scan < 40; ++scan) {
+    box.middle_m.x() += 3.0 * kScanS;
+    body.Predict(kScanS);
+    body.Update(box.SeenFrom({0.0, 0.0}), {}, kNoise, box.middle_m.norm(), true);
+  }
+  const Eigen::Isometry2d before = body.Frame();
+  const double moved_m = body.moved_m();
+  box.length_m = 9.0;
+  body.Restart(box.SeenFrom({0.0, 0.0}), {}, 20.0, false);
+  EXPECT_NEAR(body.moved_m(), moved_m, 1e-9);
+  EXPECT_LT((body.Frame().translation() - before.translation()).norm(), 1e-9);
+}
+
 TEST(Body, TurnRateOfWhatStandsIsNotKnown) {
   const Box box{{20.0, 0.0}, 0.5};
   Body body(box.SeenFrom({0.0, 0.0}), {}, kNoise, 20.0);

@@ -1,18 +1,21 @@
 #include "common/core/partition.hpp"
 
 #include <algorithm>
+#include <array>
 #include <gtest/gtest.h>
 #include <numeric>
 #include <random>
+#include <utility>
+#include <vector>
 
-namespace lookout::segmenter {
+namespace lookout {
 namespace {
 
 using Groups = std::vector<std::int32_t>;
 using Pairs = std::vector<EvidencePair>;
 
-Groups GroupsOf(std::int32_t num_pieces, const Pairs& pairs, float threshold = 0.0F) {
-  Partition partition;
+Groups GroupsOf(std::int32_t num_pieces, const Pairs& pairs, float threshold = 0.0F, Linkage linkage = Linkage::kMean) {
+  Partition partition(linkage);
   partition.Find(num_pieces, pairs, threshold);
   return {partition.group_of_piece().begin(), partition.group_of_piece().end()};
 }
@@ -30,6 +33,14 @@ TEST(Partition, MergesTheBestFirstAndThenGoesByTheMeanBetweenGroups) {
   EXPECT_EQ(GroupsOf(3, {{0, 1, 3.0F}, {1, 2, -1.0F}, {0, 2, 2.0F}}), (Groups{0, 0, 0}));
 }
 
+TEST(Partition, OfSumsMergesFirstWhereManyWeakPairsAddUp) {
+  // 3 is 1.5 to the three in sum and 0.5 in the mean, 1 to 4.
+  const Pairs pairs{{0, 1, 3.0F}, {1, 2, 3.0F}, {0, 3, 0.5F}, {1, 3, 0.5F}, {2, 3, 0.5F}, {3, 4, 1.0F}, {0, 4, -1.2F}};
+  EXPECT_EQ(GroupsOf(5, pairs, 0.0F, Linkage::kSum), (Groups{0, 0, 0, 0, 1}));
+  EXPECT_EQ(GroupsOf(5, pairs, 0.0F, Linkage::kMean), (Groups{0, 0, 0, 0, 0}));
+  EXPECT_EQ(GroupsOf(2, {{0, 1, 0.0F}}, 0.0F, Linkage::kSum), (Groups{0, 1}));
+}
+
 TEST(Partition, PairsThatAreNotGivenAreNoEvidence) { EXPECT_EQ(GroupsOf(4, {{2, 3, 1.0F}, {1, 3, 0.5F}}), (Groups{0, 1, 1, 1})); }
 
 TEST(Partition, MergesAboveTheThresholdOnly) {
@@ -45,12 +56,12 @@ TEST(Partition, OfEqualEvidenceTheLeastGapComesFirst) {
 }
 
 // As the header says it, with a look at all pairs for each merge.
-Groups Reference(std::int32_t num_pieces, const Pairs& pairs, float threshold) {
+Groups Reference(std::int32_t num_pieces, const Pairs& pairs, float threshold, Linkage linkage) {
   Groups group(static_cast<std::size_t>(num_pieces));
   std::iota(group.begin(), group.end(), 0);
   const auto of = [&group](std::int32_t piece) -> std::int32_t& { return group[static_cast<std::size_t>(piece)]; };
   while (true) {
-    double best_mean = threshold;
+    double most = threshold;
     std::pair<std::int32_t, std::int32_t> best{-1, -1};
     for (std::int32_t one = 0; one < num_pieces; ++one) {
       for (std::int32_t other = one + 1; other < num_pieces; ++other) {
@@ -62,8 +73,9 @@ Groups Reference(std::int32_t num_pieces, const Pairs& pairs, float threshold) {
           sum += pair.log_odds;
           ++count;
         }
-        if (count > 0 && sum / count > best_mean) {
-          best_mean = sum / count;
+        const double evidence = linkage == Linkage::kMean ? sum / std::max(1, count) : sum;
+        if (count > 0 && evidence > most) {
+          most = evidence;
           best = {one, other};
         }
       }
@@ -96,15 +108,19 @@ Pairs RandomPairs(std::int32_t num_pieces, double share, std::mt19937& random) {
 
 TEST(Partition, IsThatOfTheReference) {
   std::mt19937 random(1);
-  Partition partition;  // keeps nothing from one to the next
+  // They keep nothing from one round to the next.
+  std::array partitions{Partition(Linkage::kMean), Partition(Linkage::kSum)};
   for (int round = 0; round < 300; ++round) {
     const auto num_pieces = static_cast<std::int32_t>(1 + random() % 16);
     const float threshold = round % 3 == 0 ? 0.5F : 0.0F;
     const auto pairs = RandomPairs(num_pieces, round % 2 == 0 ? 0.9 : 0.3, random);
-    partition.Find(num_pieces, pairs, threshold);
-    const Groups groups(partition.group_of_piece().begin(), partition.group_of_piece().end());
-    ASSERT_EQ(groups, Reference(num_pieces, pairs, threshold)) << "round " << round;
-    ASSERT_EQ(partition.count(), std::ranges::max(groups) + 1);
+    for (const auto linkage : {Linkage::kMean, Linkage::kSum}) {
+      auto& partition = partitions.at(static_cast<std::size_t>(linkage));
+      partition.Find(num_pieces, pairs, threshold);
+      const Groups groups(partition.group_of_piece().begin(), partition.group_of_piece().end());
+      ASSERT_EQ(groups, Reference(num_pieces, pairs, threshold, linkage)) << "round " << round;
+      ASSERT_EQ(partition.count(), std::ranges::max(groups) + 1);
+    }
   }
 }
 
@@ -113,12 +129,13 @@ TEST(Partition, DoesNotDependOnTheOrderOfThePairsOrTheirEnds) {
   for (int round = 0; round < 50; ++round) {
     constexpr std::int32_t kPieces = 200;
     auto pairs = RandomPairs(kPieces, 0.05, random);
-    const auto groups = GroupsOf(kPieces, pairs);
+    const auto linkage = round % 2 == 0 ? Linkage::kMean : Linkage::kSum;
+    const auto groups = GroupsOf(kPieces, pairs, 0.0F, linkage);
     std::ranges::shuffle(pairs, random);
     for (auto& pair : pairs) {
       if (random() % 2 == 0) std::swap(pair.one, pair.other);
     }
-    ASSERT_EQ(GroupsOf(kPieces, pairs), groups) << "round " << round;
+    ASSERT_EQ(GroupsOf(kPieces, pairs, 0.0F, linkage), groups) << "round " << round;
   }
 }
 
@@ -134,4 +151,4 @@ TEST(Partition, OfALargeGroupWithManyNeighboursIsFast) {
 }
 
 }  // namespace
-}  // namespace lookout::segmenter
+}  // namespace lookout

@@ -1,0 +1,277 @@
+// Situations as a crew meets them, by hand-drawn scans: what is one thing has one name all the time.
+#include <algorithm>
+#include <functional>
+#include <gtest/gtest.h>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/tracker/core/tracker.hpp"
+#include "tests/unit/tracker/walls.hpp"
+
+namespace lookout::tracker::situations {
+namespace {
+
+using test::Box;
+using test::Called;
+using test::Walls;
+
+using Labels = std::set<std::int64_t>;
+
+constexpr int kAllScans = 1'000'000;
+
+// A scan of a situation. Each thing is one piece, with its number.
+struct Moment {
+  Walls walls;
+  test::Segmenter segmenter;
+  Eigen::Vector2d own_m = Eigen::Vector2d::Zero();
+};
+using Situation = std::function<Moment(int scan)>;
+
+// What the tracker makes of it.
+struct Story {
+  std::map<int, std::map<int, std::int64_t>> label_of;  // by thing and scan, where it was seen: the track of its piece
+  std::vector<Picture> pictures;                        // by scan
+
+  // Of a thing in [from, end), each once.
+  Labels LabelsOf(int thing, int from, int end = kAllScans) const {
+    Labels labels;
+    for (const auto& [scan, label] : label_of.at(thing)) {
+      if (scan >= from && scan < end) labels.insert(label);
+    }
+    return labels;
+  }
+  // Where it has one name from a scan on; kNoTrack where it has more, or none.
+  std::int64_t NameOf(int thing, int from) const {
+    const auto labels = LabelsOf(thing, from);
+    return labels.size() == 1 ? *labels.begin() : kNoTrack;
+  }
+  Labels Reported() const {
+    Labels ids;
+    for (const auto& picture : pictures) {
+      for (const auto& track : picture.tracks) {
+        if (test::IsReported(track)) ids.insert(track.id);
+      }
+    }
+    return ids;
+  }
+  // Scans from one on in which a track is not reported.
+  int NumWithout(std::int64_t id, std::size_t from) const {
+    return static_cast<int>(std::count_if(pictures.begin() + static_cast<std::ptrdiff_t>(from), pictures.end(), [id](const Picture& picture) {
+      return std::ranges::none_of(picture.tracks, [id](const Track& track) { return track.id == id && test::IsReported(track); });
+    }));
+  }
+  // Of the last scan.
+  Eigen::Vector2d VelocityOf(std::int64_t id) const {
+    for (const auto& track : pictures.back().tracks) {
+      if (track.id == id) return track.velocity_mps;
+    }
+    return Eigen::Vector2d::Constant(kNan);
+  }
+};
+
+Story Follow(int num_scans, const Situation& situation) {
+  Story story;
+  Tracker tracker(test::WallParams());
+  std::mt19937_64 random(1);
+  for (int scan = 0; scan < num_scans; ++scan) {
+    const auto moment = situation(scan);
+    const auto input = test::Look(scan, moment.own_m, moment.walls, moment.segmenter, random);
+    const auto& picture = tracker.Update(input);
+    for (const std::int16_t piece : std::set(input.sweep->piece.begin(), input.sweep->piece.end())) {
+      const auto at = static_cast<std::size_t>(piece - 1);
+      if (piece > 0) story.label_of[piece][scan] = at < picture.track_of_piece.size() ? picture.track_of_piece[at] : kNoTrack;
+    }
+    story.pictures.push_back(picture);
+  }
+  return story;
+}
+
+// Things 1 and 2: each a segment, or both the segment of the first.
+test::Segmenter AsOne(bool is_one) {
+  return [is_one](int thing, const Eigen::Vector2d&) { return Called{is_one && thing == 2 ? 1 : thing, false, thing}; };
+}
+// The same, where the first is land.
+test::Segmenter AsOneWithLand(bool is_one) {
+  return [is_one](int thing, const Eigen::Vector2d&) { return Called{is_one ? 1 : thing, is_one || thing == 1, thing}; };
+}
+
+void ExpectSpeed(const Story& story, std::int64_t id, const Eigen::Vector2d& velocity_mps) {
+  EXPECT_LT((story.VelocityOf(id) - velocity_mps).norm(), 0.15) << "is " << story.VelocityOf(id).transpose();
+}
+
+// It lies 0.4 m before the dock until scan 120.
+constexpr int kLeaves = 120;
+Walls DockAndBoat(int scan) {
+  const double way_m = test::kScanS * std::max(0, scan - kLeaves);
+  return Box({0.0, 17.0}, 24.0, 3.0, 1.2, 1) + Box({2.0 + 0.6 * way_m, 14.2 - 0.8 * way_m}, 6.0, 2.2, 1.3, 2);
+}
+bool IsBeside(int scan) { return scan < kLeaves + 8; }
+
+TEST(Situation, ABoatLeavesADockWithWhichItIsOneInThreeScansOfTen) {
+  for (const bool is_land : {false, true}) {
+    SCOPED_TRACE(is_land ? "land" : "no land");
+    const auto story = Follow(300, [is_land](int scan) {
+      const bool is_one = IsBeside(scan) && scan * 7 % 10 < 3;
+      return Moment{DockAndBoat(scan), is_land ? AsOneWithLand(is_one) : AsOne(is_one)};
+    });
+    const auto dock = story.NameOf(1, 10);
+    const auto boat = story.NameOf(2, 10);
+    EXPECT_GT(boat, 0);
+    EXPECT_TRUE(is_land ? dock == 0 : dock > 0 && dock != boat) << dock;
+    EXPECT_EQ(story.Reported().size(), is_land ? 1U : 2U);
+    EXPECT_EQ(story.NumWithout(boat, 20), 0);
+    ExpectSpeed(story, boat, {0.6, -0.8});
+  }
+}
+
+TEST(Situation, ABoatLeavesAQuayOfWhichItWasAlwaysAPart) {
+  const auto story = Follow(300, [](int scan) { return Moment{DockAndBoat(scan), AsOneWithLand(IsBeside(scan))}; });
+  EXPECT_EQ(story.NameOf(1, 0), 0);
+  EXPECT_EQ(story.LabelsOf(2, 0, kLeaves), Labels{0});
+  const auto boat = story.NameOf(2, kLeaves + 30);
+  EXPECT_GT(boat, 0);
+  EXPECT_EQ(story.Reported(), Labels{boat});
+  EXPECT_EQ(story.NumWithout(boat, kLeaves + 35), 0);
+  ExpectSpeed(story, boat, {0.6, -0.8});
+}
+
+// The segmenter takes both for one while they are abreast: never, always, in each second scan.
+TEST(Situation, TwoBoatsPassWithinAMetre) {
+  for (const double speed_mps : {1.0, 2.0}) {
+    for (const int every : {0, 1, 2}) {
+      SCOPED_TRACE(std::to_string(speed_mps) + " m/s, one in each scan of " + std::to_string(every));
+      const auto story = Follow(static_cast<int>(400 / speed_mps), [=](int scan) {
+        const double way_m = test::kScanS * speed_mps * scan;
+        const bool is_abreast = std::abs(2.0 * way_m - 40.0) < 6.0;
+        return Moment{Box({-20.0 + way_m, 12.0}, 5.0, 2.0, 1.0, 1) + Box({20.0 - way_m, 15.0}, 5.0, 2.0, 1.8, 2),
+                      AsOne(is_abreast && every > 0 && scan % every == 0)};
+      });
+      const auto one = story.NameOf(1, 0);
+      const auto other = story.NameOf(2, 0);
+      EXPECT_GT(one, 0);
+      EXPECT_GT(other, 0);
+      EXPECT_EQ(story.Reported(), (Labels{one, other}));
+      EXPECT_EQ(story.Reported().size(), 2U);
+      ExpectSpeed(story, one, {speed_mps, 0.0});
+      ExpectSpeed(story, other, {-speed_mps, 0.0});
+    }
+  }
+}
+
+TEST(Situation, ABoatPassesAPile) {
+  for (const int every : {1, 2, 3}) {
+    SCOPED_TRACE(every);
+    const auto story = Follow(250, [every](int scan) {
+      const double way_m = 0.2 * scan;
+      const bool is_beside = std::abs(way_m - 22.0) < 3.5;
+      return Moment{Box({-22.0 + way_m, 14.0}, 5.0, 2.0, 1.4, 1) + Box({0.0, 12.3}, 0.4, 0.4, 2.0, 2), AsOne(is_beside && scan % every == 0)};
+    });
+    const auto boat = story.NameOf(1, 0);
+    const auto pile = story.NameOf(2, 0);
+    EXPECT_EQ(story.Reported(), (Labels{boat, pile}));
+    EXPECT_EQ(story.Reported().size(), 2U);
+    ExpectSpeed(story, boat, {2.0, 0.0});
+    ExpectSpeed(story, pile, {0.0, 0.0});
+  }
+}
+
+TEST(Situation, ADinghyLiesBeforeAShoreThatItIsAPartOfInOneScanOfThree) {
+  for (const double gap_m : {1.0, 2.0}) {
+    SCOPED_TRACE(gap_m);
+    const auto story = Follow(300, [gap_m](int scan) {
+      return Moment{Walls{{{-60.0, 20.0}, {60.0, 20.0}, 2.0, 1}} + Box({3.0, 19.25 - gap_m}, 3.0, 1.5, 1.0, 2), AsOneWithLand(scan % 3 == 2)};
+    });
+    const auto dinghy = story.NameOf(2, 0);
+    EXPECT_GT(dinghy, 0);
+    EXPECT_EQ(story.NameOf(1, 0), 0);
+    EXPECT_EQ(story.Reported(), Labels{dinghy});
+    EXPECT_EQ(story.NumWithout(dinghy, 15), 0);
+    ExpectSpeed(story, dinghy, {0.0, 0.0});
+  }
+}
+
+// Waves hide it after the first second.
+TEST(Situation, ABuoyIsSeenInOneScanOfFive) {
+  for (const double reflects : {1.0, 0.3}) {
+    SCOPED_TRACE(reflects);
+    const auto story = Follow(400, [reflects](int scan) {
+      return Moment{scan < 10 || scan % 5 == 0 ? Box({4.0, 15.0}, 0.6, 0.6, 1.0, 1, reflects) : Walls{}, AsOne(false)};
+    });
+    EXPECT_EQ(story.Reported().size(), 1U);
+    EXPECT_EQ(story.NumWithout(*story.Reported().begin(), 1), 0);
+  }
+}
+
+// At first the boat sees the end of it only.
+TEST(Situation, ADockComesIntoViewAsTheBoatPassesIt) {
+  for (const double speed_mps : {1.0, 3.0}) {
+    SCOPED_TRACE(speed_mps);
+    const auto story = Follow(200, [speed_mps](int scan) {
+      const double way_m = test::kScanS * speed_mps * scan;
+      return Moment{Box({10.0, 15.0}, 20.0, 2.0, 1.2, 1), AsOne(false), Eigen::Vector2d(-12.0 + 0.5 * way_m, 15.0 - way_m)};
+    });
+    const auto dock = story.NameOf(1, 0);
+    EXPECT_EQ(story.Reported(), Labels{dock});
+    for (const auto& picture : story.pictures) {
+      for (const auto& track : picture.tracks) EXPECT_TRUE(track.velocity_mps.isZero(0.0));
+    }
+    EXPECT_NEAR(story.pictures.back().tracks.front().rectangle.length_m, 20.0, 1.0);
+  }
+}
+
+// 7 m long; the segmenter cuts off the stern.
+Walls BowAndStern(double way_m) { return Box({-18.0 + way_m, 12.0}, 4.0, 2.0, 1.0, 1) + Box({-21.5 + way_m, 12.0}, 3.0, 2.0, 1.6, 2); }
+
+TEST(Situation, ABoatLosesItsSternInEachThirdScan) {
+  for (const int every : {3, 2}) {
+    SCOPED_TRACE(every);
+    const auto story = Follow(200, [every](int scan) { return Moment{BowAndStern(0.2 * scan), AsOne(scan % every != every - 1)}; });
+    const auto boat = story.NameOf(1, 0);
+    EXPECT_GT(boat, 0);
+    EXPECT_EQ(story.NameOf(2, 0), boat);
+    EXPECT_EQ(story.Reported(), Labels{boat});
+    EXPECT_EQ(story.NumWithout(boat, 5), 0);
+    ExpectSpeed(story, boat, {2.0, 0.0});
+  }
+}
+
+TEST(Situation, ABoatThatLosesItsSternStopsAndGoesOn) {
+  const auto story = Follow(500, [](int scan) {
+    const double way_m = 0.2 * std::min(scan, 100) + 0.2 * std::max(0, scan - 300);
+    return Moment{BowAndStern(way_m), AsOne(scan % 3 != 2)};
+  });
+  const auto boat = story.NameOf(1, 0);
+  EXPECT_EQ(story.NameOf(2, 0), boat);
+  EXPECT_EQ(story.Reported(), Labels{boat});
+  ExpectSpeed(story, boat, {2.0, 0.0});
+}
+
+TEST(Situation, ABoatComesOutFromBehindAHouse) {
+  const auto story = Follow(200, [](int scan) {
+    return Moment{Box({-12.0, 8.0}, 12.0, 2.0, 3.0, 1) + Box({-14.0 + 0.2 * scan, 14.0}, 8.0, 2.4, 1.6, 2), AsOneWithLand(false)};
+  });
+  const auto boat = story.NameOf(2, 1);
+  EXPECT_GT(boat, 0);
+  EXPECT_EQ(story.NameOf(1, 0), 0);
+  EXPECT_EQ(story.Reported(), Labels{boat});
+  ExpectSpeed(story, boat, {2.0, 0.0});
+}
+
+TEST(Situation, MooredBoatsAreOneInEachThirdScan) {
+  const auto story = Follow(300, [](int scan) {
+    return Moment{Box({6.0, 10.0}, 2.4, 7.0, 1.4, 1) + Box({9.6, 10.0}, 2.4, 7.0, 2.0, 2), AsOne(scan % 3 == 0), {0.0, -15.0 + 0.15 * scan}};
+  });
+  const auto one = story.NameOf(1, 0);
+  const auto other = story.NameOf(2, 10);
+  EXPECT_EQ(story.Reported(), (Labels{one, other}));
+  EXPECT_EQ(story.Reported().size(), 2U);
+  ExpectSpeed(story, one, {0.0, 0.0});
+  ExpectSpeed(story, other, {0.0, 0.0});
+}
+
+}  // namespace
+}  // namespace lookout::tracker::situations
