@@ -47,7 +47,13 @@ struct Known {
   bool had_sight = false;           // ever: without beams at all, misses count by themselves
 };
 
-/// Run it once; what it found is then to be asked for.
+// Cheap, before a polygon is asked: rounding counts for it.
+inline bool IsWithin(const Eigen::Vector2d& place_m, const Eigen::Vector2d& middle_m, double radius_m) {
+  constexpr double kOfRoundingM = 1e-6;
+  return (place_m - middle_m).norm() <= radius_m + kOfRoundingM;
+}
+
+/// Run it once; what it found is then to be taken. Its stages are files: step_associate, step_exist, step_move, step_land, step_merge, step_settle.
 class Step {
  public:
   Step(const TrackerParams& params, const ScanInput& scan, Known& known, double dt_s) : params_(params), scan_(scan), known_(known), dt_s_(dt_s) {}
@@ -88,7 +94,10 @@ class Step {
   bool IsClear(std::size_t i) const;
   void AskWatched(Followed& track) const;
   void Begin();
+  void ConfirmWhereLikely(Followed& track, std::size_t i);
   void Confirm(Followed& track);
+  void Move(Followed& track, std::size_t i, const Seen& seen, const Sides& sides);
+  void Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen::Vector2d& expected_m);
   void FeedLand();
   void EndLand();
   void Merge();
