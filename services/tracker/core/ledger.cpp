@@ -57,6 +57,12 @@ Ledger::Sums::Met Ledger::Sums::Of(std::int32_t one, std::int32_t other) {
   return {pairs_[IndexOf(slots_[slot])].log_odds, is_first};
 }
 
+float Ledger::Sums::Find(std::int32_t one, std::int32_t other) const {
+  if (slots_.empty()) return 0.0F;
+  const std::int32_t at = slots_[SlotOf(std::min(one, other), std::max(one, other))];
+  return at < 0 ? 0.0F : pairs_[IndexOf(at)].log_odds;
+}
+
 void Ledger::Sums::Grow() {
   slots_.assign(2 * slots_.size(), -1);
   for (std::size_t i = 0; i < pairs_.size(); ++i) slots_[SlotOf(pairs_[i].one, pairs_[i].other)] = static_cast<std::int32_t>(i);
@@ -192,11 +198,18 @@ void Ledger::Group(std::span<const Piece> pieces) {
     num_returns[group] += count;
   }
   for (std::size_t group = 0; group < num_returns.size(); ++group) groups_.land[group] /= num_returns[group];
+  between_.Begin(groups_.land.size());
+  for (const auto& pair : sums_.pairs()) {
+    const std::int32_t one = groups_.of_piece[IndexOf(pair.one)];
+    const std::int32_t other = groups_.of_piece[IndexOf(pair.other)];
+    if (one != other) between_.Of(one, other).evidence += pair.log_odds;
+  }
 }
 
 void Ledger::Clear() {
   fine_.Clear();
   coarse_.Clear();
+  between_.Begin(0);
 }
 
 }  // namespace lookout::tracker

@@ -45,6 +45,9 @@ class Ledger {
   /// Cost: proportional to the pairs of cells with returns that are 2.5 m apart at most; figures in the bench. Memory: VoteGrid.
   const Groups& Divide(std::span<const Piece> pieces, std::span<const Frame> frames);
 
+  /// Of the last call's groups: what is left between two of them, 0 or below; 0 where nothing was measured of them.
+  float EvidenceBetween(std::int32_t one, std::int32_t other) const { return between_.Find(one, other); }
+
   void Clear();
 
  private:
@@ -57,6 +60,7 @@ class Ledger {
       bool is_first;
     };
     Met Of(std::int32_t one, std::int32_t other);
+    float Find(std::int32_t one, std::int32_t other) const;  // 0: none
     std::span<const EvidencePair> pairs() const { return pairs_; }
 
    private:
@@ -82,6 +86,7 @@ class Ledger {
   std::vector<double> land_;                       // [pieces] mean vote of its cells, by returns
   std::vector<double> old_;                        // [pieces] share of its returns where something was seen for a while
   Sums sums_;
+  Sums between_;  // groups
   Partition partition_{Linkage::kSum};
   Groups groups_;
 };

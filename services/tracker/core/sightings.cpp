@@ -136,6 +136,7 @@ void AddGroups(const ScanInput& scan, const std::vector<PieceReturns>& pieces, c
     }
     sightings.all.push_back(std::move(sighting));
   }
+  sightings.num_groups = static_cast<std::int32_t>(sightings.all.size());
   for (std::size_t i = 0; i < scan.seen.size(); ++i) {
     if (returns_of_segment[i] == 0) AddSegment(scan.seen[i], sightings);
   }

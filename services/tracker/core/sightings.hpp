@@ -30,6 +30,7 @@ struct Sighting {
 
 struct Sightings {
   std::vector<Sighting> all;
+  std::int32_t num_groups = 0;  // of the ledger: the first ones of all, in its order
   // What pieces (by number less one) and segments (by id less one) are in: an index of all; of a segment in several that with most of its returns;
   // -1: there is no such piece or segment.
   std::vector<std::int32_t> of_piece;

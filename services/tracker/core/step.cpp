@@ -17,6 +17,7 @@ void Step::Run() {
   }
   auto sightings = SightingsOf(scan_, known_.sight, known_.tracks, known_.ledger);
   sightings_ = std::move(sightings.all);
+  num_groups_ = sightings.num_groups;
   sighting_of_piece_ = std::move(sightings.of_piece);
   sighting_of_segment_ = std::move(sightings.of_segment);
   LeaveOutdated();

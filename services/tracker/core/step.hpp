@@ -81,6 +81,7 @@ class Step {
   void Settle();
   double CostOf(const Followed& track, std::size_t i);
   const Sides& SidesOf(std::size_t i);
+  bool AreTwo(std::size_t one, std::size_t other) const;
   void AssignBodies();
   template <typename Take>
   void TakeNearest(std::vector<Near>& pairs, const Take& take);
@@ -118,6 +119,7 @@ class Step {
   bool is_sight_known_ = false;
   bool has_left_out_ = false;  // segments, since they are outdated
   std::vector<Sighting> sightings_;
+  std::int32_t num_groups_ = 0;  // of the ledger among them
   std::vector<std::int32_t> sighting_of_piece_;
   std::vector<std::int32_t> sighting_of_segment_;
   std::vector<std::int64_t> track_of_piece_;

@@ -73,12 +73,20 @@ void Step::AssignBodies() {
   }
 }
 
+// Whether the scans that saw both side by side say that these are two.
+bool Step::AreTwo(std::size_t one, std::size_t other) const {
+  const auto first = static_cast<std::int32_t>(one);
+  const auto second = static_cast<std::int32_t>(other);
+  return first < num_groups_ && second < num_groups_ && known_.ledger.EvidenceBetween(first, second) < 0.0F;
+}
+
 // A thing may come in several segments. What nothing else is known by, and lies in the outline of a track, is of it.
 void Step::HitWhole(Followed& track, std::size_t i) {
   std::vector<std::size_t> others;
   const auto around = RectangleAround(track.outline_m);
   if (track.is_confirmed && sightings_[i].use == Sighting::Use::kAssigned && around.width_m < kWidestBoatM && around.length_m < kLongestWholeM) {
     for (std::size_t k = 0; k < sightings_.size(); ++k) {
+      if (AreTwo(i, k)) continue;
       if (sightings_[k].use != Sighting::Use::kFree || sightings_[k].seen.thing_probability < 0.5 ||
           (sightings_[k].middle_m - track.middle_m).norm() > track.radius_m + kPieceBesideM)
         continue;
