@@ -343,6 +343,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const Eigen::Vector2d way_m = middle_m - track.seen_m;
   const double step_m = std::min(way_m.norm(), (way_m - common_step_m_).norm());
   track.AddLook(Logit(seen.thing_probability), step_m / scans);
+  if (!track.is_confirmed && IsAlone(track, i)) ++track.num_alone;
   track.seen_m = middle_m;
   track.seen_radius_m = radius_m_[i];
   track.sum_returns += seen.num_returns;
@@ -427,6 +428,18 @@ bool Step::IsClear(std::size_t i) const {
     if (k != i && scan_.seen[k].is_sure && !scan_.seen[k].is_land && is_near(middle_m_[k], radius_m_[k])) return false;
   }
   return std::ranges::none_of(known_.tracks, [&](const Followed& other) { return other.body && is_near(other.middle_m, other.radius_m); });
+}
+
+// Beside a known thing its parts may be seen, beside the own hull crew, rods and flags: these stand as still as the thing or the boat.
+bool Step::IsAlone(const Followed& track, std::size_t i) const {
+  constexpr double kAloneM = 4.0;
+  constexpr double kOwnGearM = 2.0;
+  const std::array<Eigen::Vector2d, 1> place{ToVessel(middle_m_[i])};
+  const double to_own_m = params_.own_hull_m.empty() ? place.front().norm() : GapOf(params_.own_hull_m, place).distance_m;
+  if (to_own_m < kOwnGearM + radius_m_[i]) return false;
+  return std::ranges::none_of(known_.tracks, [&](const Followed& other) {
+    return other.is_confirmed && other.id != track.id && IsWithin(other.middle_m, middle_m_[i], kAloneM + other.radius_m + radius_m_[i]);
+  });
 }
 
 // How the water was watched in which it came up; again where it turns out to be higher. Nothing comes up beside where a known thing was lost: that is
