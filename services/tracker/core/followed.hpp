@@ -48,6 +48,7 @@ struct Followed {
   double seen_radius_m = 0.0;                                        // of it
   double first_radius_m = 0.0;                                       // of what was seen first
   int num_hits = 0;
+  int num_alone = 0;       // of these away from all known things and from the own hull, to which parts, gear and crew stand still
   double beams_met = 1.0;  // of those that could have: with one of two as what is known before
   double beams_open = 2.0;
   double top_m = 0.0;
@@ -74,16 +75,17 @@ struct Followed {
   Encounter overtaking = Encounter::kNone;  // one overtakes the other, until they are past and clear
 
   // That it is a thing and no clutter that lasts (crest, foam, drops): what its segments look like, how often it was seen, and how steadily it stands
-  // or moves. Fitted: logistic regression; and nothing but things stands still to some centimetres from scan to scan (DECISIONS.md).
+  // or moves. Fitted: logistic regression; and nothing but things, and what is on the own boat, stands still to some centimetres from scan to scan
+  // (DECISIONS.md).
   double ThingLogOdds() const {
     constexpr double kLeastStepM = 0.05;
     constexpr double kStillStepM = 0.05;
-    constexpr int kLeastStill = 2;
+    constexpr int kLeastStill = 1;  // one step may be chance
     constexpr int kMostStill = 20;
     const double often = Log(std::min(num_hits, kMostLooks));
     const double step_m = std::sqrt(mean_step_m2);
     const double unsteady = Log(step_m + kLeastStepM);
-    const double still = std::clamp(num_hits - kLeastStill, 0, kMostStill) * Exp(-step_m / kStillStepM);
+    const double still = std::clamp(num_alone - kLeastStill, 0, kMostStill) * Exp(-step_m / kStillStepM);
     return -0.86 + std::clamp(mean_thing, -4.0, 4.0) * (0.90 + 0.31 * often) + 0.77 * often - unsteady * (0.39 + 0.53 * often) + still;
   }
   void AddLook(double thing_log_odds, double step_m) {

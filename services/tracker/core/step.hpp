@@ -93,6 +93,7 @@ class Step {
   void Miss(Followed& track);
   void FindInside();
   bool IsClear(std::size_t i) const;
+  bool IsAlone(const Followed& track, std::size_t i) const;
   void AskWatched(Followed& track) const;
   void Begin();
   void ConfirmWhereLikely(Followed& track, std::size_t i);

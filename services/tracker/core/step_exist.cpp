@@ -1,5 +1,6 @@
 // What is there.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/core/angles.hpp"
@@ -64,6 +65,7 @@ void Step::Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen
   // Of what is known for sure, a way behind something else is no unsteadiness.
   const double scans = track.is_confirmed ? std::max(1.0, ToSeconds(scan_.end_time - track.seen) / std::max(dt_s_, 0.01)) : 1.0;
   track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm() / scans);
+  if (!track.is_confirmed && IsAlone(track, i)) ++track.num_alone;
   track.seen_m = middle_m;
   track.seen_radius_m = sighting.radius_m;
   Remember(track, true);
@@ -104,6 +106,19 @@ bool Step::IsClear(std::size_t i) const {
     if (k != i && sightings_[k].seen.is_sure && !sightings_[k].seen.is_land && is_near(sightings_[k].middle_m, sightings_[k].radius_m)) return false;
   }
   return std::ranges::none_of(known_.tracks, [&](const Followed& other) { return other.body && is_near(other.middle_m, other.radius_m); });
+}
+
+// Beside a known thing its parts may be seen, beside the own hull crew, rods and flags: these stand as still as the thing or the boat.
+bool Step::IsAlone(const Followed& track, std::size_t i) const {
+  constexpr double kAloneM = 4.0;
+  constexpr double kOwnGearM = 2.0;
+  const auto& sighting = sightings_[i];
+  const std::array<Eigen::Vector2d, 1> place{ToVessel(sighting.middle_m)};
+  const double to_own_m = params_.own_hull_m.empty() ? place.front().norm() : GapOf(params_.own_hull_m, place).distance_m;
+  if (to_own_m < kOwnGearM + sighting.radius_m) return false;
+  return std::ranges::none_of(known_.tracks, [&](const Followed& other) {
+    return other.is_confirmed && other.id != track.id && IsWithin(other.middle_m, sighting.middle_m, kAloneM + other.radius_m + sighting.radius_m);
+  });
 }
 
 // How the water was watched in which it came up; again where it turns out to be higher. Nothing comes up beside where a known thing was lost: that is
