@@ -140,10 +140,10 @@ TEST(VoteGrid, VotesByReturnsCountMoreWithMoreOfThem) {
 
 TEST(VoteGrid, PairsAreThoseWithinReachInTheSameFrame) {
   std::mt19937 random(1);
-  std::uniform_int_distribution<std::int32_t> place(-9, 9);
   VoteGrid grid(kCellM, VoteGrid::Content::kAll);
   constexpr std::array<std::int64_t, 3> kFrames{0, 4, 2};
   for (int round = 0; round < 100; ++round) {
+    std::uniform_int_distribution<std::int32_t> place(-round % 10, round % 10);
     std::vector<Return> returns(1 + random() % 120);
     for (auto& one : returns)
       one = {place(random), place(random), static_cast<std::int32_t>(random() % 4), 0, static_cast<std::int32_t>(random() % 3)};
