@@ -34,7 +34,7 @@ std::string_view KindText(std::optional<TrackKind> kind) {
 
 std::string WhoText(std::int64_t track_id, std::optional<TrackKind> kind) {
   if (track_id == kLandTrack) return "land";
-  if (track_id == kUnnamed) return "obstacle";
+  if (track_id <= kUnnamed) return "obstacle";
   return fmt::format("{} {}", KindText(kind), track_id);
 }
 

@@ -13,6 +13,7 @@
 #include "common/core/utime.hpp"
 #include "services/tracker/core/body.hpp"
 #include "services/tracker/core/encounter.hpp"
+#include "services/tracker/core/watched_water.hpp"
 
 namespace lookout::tracker {
 
@@ -29,7 +30,8 @@ inline constexpr int kMostHits = 30;               // that count in a mean, the 
 inline constexpr int kMostLooks = 60;              // that speak for it
 
 struct Followed {
-  std::int64_t id = 0;
+  std::int64_t id = 0;      // in the order in which they began
+  std::int64_t number = 0;  // given when it is confirmed; 0: not yet
   Utime first;
   Utime seen;
   Utime seen_alone;                        // when it was last seen by itself, and not inside of what another is seen by
@@ -52,10 +54,12 @@ struct Followed {
   double sum_returns = 0.0;
   int num_moving = 0;                                 // scans in which it moved for sure
   Eigen::Vector2d first_m = Eigen::Vector2d::Zero();  // middle, when it was seen first
+  std::optional<Watched> watched;                     // the water in which it came up, before it did; nullopt: nobody has asked
+  double watched_top_m = 0.0;                         // with which it was asked
   int num_misfits = 0;                                // scans in a row whose outline was another
   std::deque<bool> looks;
   std::vector<std::int32_t> segment_ids;
-  std::vector<std::pair<std::int64_t, Utime>> parents;
+  std::vector<std::pair<std::int64_t, Utime>> parents;  // by number
   std::vector<std::pair<std::int64_t, Utime>> children;
   std::int64_t frame = 0;  // of the ledger: 0 the earth, above 0 its own, since it moves
   double stood_s = 0.0;    // since it moved last
@@ -70,12 +74,17 @@ struct Followed {
   Encounter overtaking = Encounter::kNone;  // one overtakes the other, until they are past and clear
 
   // That it is a thing and no clutter that lasts (crest, foam, drops): what its segments look like, how often it was seen, and how steadily it stands
-  // or moves. Fitted: logistic regression (DECISIONS.md).
+  // or moves. Fitted: logistic regression; and nothing but things stands still to some centimetres from scan to scan (DECISIONS.md).
   double ThingLogOdds() const {
     constexpr double kLeastStepM = 0.05;
+    constexpr double kStillStepM = 0.05;
+    constexpr int kLeastStill = 2;
+    constexpr int kMostStill = 20;
     const double often = Log(std::min(num_hits, kMostLooks));
-    const double unsteady = Log(std::sqrt(mean_step_m2) + kLeastStepM);
-    return -0.86 + std::clamp(mean_thing, -4.0, 4.0) * (0.90 + 0.31 * often) + 0.77 * often - unsteady * (0.39 + 0.53 * often);
+    const double step_m = std::sqrt(mean_step_m2);
+    const double unsteady = Log(step_m + kLeastStepM);
+    const double still = std::clamp(num_hits - kLeastStill, 0, kMostStill) * Exp(-step_m / kStillStepM);
+    return -0.86 + std::clamp(mean_thing, -4.0, 4.0) * (0.90 + 0.31 * often) + 0.77 * often - unsteady * (0.39 + 0.53 * often) + still;
   }
   void AddLook(double thing_log_odds, double step_m) {
     ++num_hits;
@@ -83,7 +92,30 @@ struct Followed {
     mean_thing += gain * (thing_log_odds - mean_thing);
     if (num_hits > 1) mean_step_m2 += (num_hits == 2 ? 1.0 : gain) * (step_m * step_m - mean_step_m2);
   }
+  // As others know it: a number from 1 up, or one of -2 and below until it is confirmed.
+  std::int64_t PublicId() const {
+    constexpr std::int64_t kMostAtATime = 900'000;
+    return number > 0 ? number : -2 - id % kMostAtATime;
+  }
   double Existence() const { return Sigmoid(log_odds) * Sigmoid(ThingLogOdds()); }
+  // That it is no crest, which looks like a thing for as long as it lives. Crests are low, run, and come up in water that was seen to be empty; none
+  // of this says anything of what has lived longer than they do. Fitted: logistic regression; what came up counts in full (DECISIONS.md).
+  double NoCrestLogOdds() const {
+    constexpr double kHighM = 1.0;       // higher than any crest
+    constexpr double kLowM = 0.5;        // as low as most
+    constexpr double kLongestS = 5.0;    // that one lives
+    constexpr double kAtFirstMps = 1.0;  // how fast it runs, before that is seen
+    constexpr double kAtFirstS = 0.5;
+    constexpr double kMostMps = 1.5;
+    const double age_s = ToSeconds(seen - first);
+    const double low_m = std::clamp(kHighM - top_m, 0.0, kHighM);
+    const double runs_mps = std::min(((seen_m - first_m).norm() + kAtFirstMps * kAtFirstS) / (age_s + kAtFirstS), kMostMps);
+    const double seen_share = (static_cast<double>(std::ranges::count(looks, true)) + 1.0) / (static_cast<double>(looks.size()) + 2.0);
+    const double came_up = watched ? CameUpLogOdds(*watched, seen_share) : 0.0;
+    const double crest = low_m * (2.0 + 2.1 * runs_mps) + std::min(1.0, low_m / kLowM) * came_up;
+    return 6.3 - crest * std::max(0.0, 1.0 - age_s / kLongestS);
+  }
+  double Probability() const { return Existence() * Sigmoid(NoCrestLogOdds()); }
   double UnseenS(Utime now) const { return ToSeconds(now - seen); }
 
   // Who it came of, or what became of it: the newest of many.

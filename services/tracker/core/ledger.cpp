@@ -79,14 +79,16 @@ void Ledger::TakeNote(std::span<const Piece> pieces, std::span<const Frame> fram
   std::vector<std::int64_t> ids;
   ids.reserve(frames.size());
   for (const auto& frame : frames) ids.push_back(frame.id);
-  fine_.Begin(ids, kMemoryScans);
-  coarse_.Begin(ids, kMemoryScans);
+  segments_.clear();
+  for (const auto& piece : pieces) segments_.push_back(piece.segment);
+  fine_.Begin(ids, segments_, kMemoryScans);
+  coarse_.Begin(ids, segments_, kMemoryScans);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const auto& [segment, is_land, frame, places_m] = pieces[i];
-    for (const auto& place_m : places_m) {
+    const auto frame = pieces[i].frame;
+    for (const auto& place_m : pieces[i].places_m) {
       const Eigen::Vector2d here_m = frames[IndexOf(frame)].T_frame_map * place_m;
-      fine_.Add(frame, here_m, static_cast<std::int32_t>(i), segment);
-      coarse_.Add(frame, here_m, static_cast<std::int32_t>(i), segment);
+      fine_.Add(frame, here_m, static_cast<std::int32_t>(i));
+      coarse_.Add(frame, here_m, static_cast<std::int32_t>(i));
     }
   }
   fine_.Vote(kFade, VoteGrid::Weight::kOne);
@@ -139,9 +141,9 @@ void Ledger::AddEvidence(const VoteGrid& grid, double reach_m, double weight) {
 
 void Ledger::AddEvidenceAcross(std::span<const Piece> pieces) {
   constexpr std::array<std::int64_t, 1> kMap{0};
-  across_.Begin(kMap, 1);
+  across_.Begin(kMap, segments_, 1);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    for (const auto& place_m : pieces[i].places_m) across_.Add(0, place_m, static_cast<std::int32_t>(i), pieces[i].segment);
+    for (const auto& place_m : pieces[i].places_m) across_.Add(0, place_m, static_cast<std::int32_t>(i));
   }
   across_.FindPairs();
   for (const auto& pair : across_.pairs()) {

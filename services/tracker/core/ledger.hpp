@@ -75,6 +75,7 @@ class Ledger {
   bool IsLand(std::int32_t piece) const;
   void Group(std::span<const Piece> pieces);
 
+  std::vector<std::int32_t> segments_;  // [pieces]
   VoteGrid fine_{0.5, VoteGrid::Content::kAll};
   VoteGrid coarse_{2.0, VoteGrid::Content::kMostOf};
   VoteGrid across_{0.5, VoteGrid::Content::kAll};  // of this scan only, on the map

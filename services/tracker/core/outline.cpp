@@ -248,7 +248,29 @@ Rectangle RectangleAround(std::span<const Eigen::Vector2d> polygon) {
 }
 
 // As by SidesOf, without keeping them: most points lie outside of the rectangle already.
+namespace {
+
+// What lies within the four outermost places is no corner (Akl and Toussaint).
+void DropInner(std::vector<Eigen::Vector2d>& places_m) {
+  constexpr std::size_t kFew = 32;
+  if (places_m.size() < kFew) return;
+  std::array<Eigen::Vector2d, 4> outer;  // counter-clockwise
+  const auto farthest = [&places_m](double x, double y) {
+    return *std::ranges::max_element(places_m, {}, [x, y](const Eigen::Vector2d& place_m) { return x * place_m.x() + y * place_m.y(); });
+  };
+  outer = {farthest(1.0, 0.0), farthest(0.0, 1.0), farthest(-1.0, 0.0), farthest(0.0, -1.0)};
+  std::erase_if(places_m, [&outer](const Eigen::Vector2d& place_m) {
+    for (std::size_t i = 0; i < outer.size(); ++i) {
+      if (Cross(outer.at((i + 1) % outer.size()) - outer.at(i), place_m - outer.at(i)) <= 0.0) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace
+
 std::vector<Eigen::Vector2d> HullOf(std::vector<Eigen::Vector2d> places_m) {
+  DropInner(places_m);
   std::ranges::sort(places_m, [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
   places_m.erase(std::unique(places_m.begin(), places_m.end()), places_m.end());
   if (places_m.size() < 3) return places_m;

@@ -35,7 +35,7 @@ struct Sweep {
   std::vector<Utime> time;                // [columns]
   std::vector<float> range_m;             // [columns x rings] first return; 0 = none
   std::vector<std::int16_t> label;        // [columns x rings] of SEGMENTS: above 0 the segment's id; empty where SEGMENTS did not come
-  std::vector<std::int16_t> piece;        // [columns x rings] of SEGMENTS: where a label is above 0 the piece, from 1; empty: each segment is one piece
+  std::vector<std::int16_t> piece;  // [columns x rings] of SEGMENTS: where a label is above 0 the piece, from 1; empty: each segment is one piece
 };
 
 struct ScanInput {

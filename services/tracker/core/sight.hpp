@@ -39,6 +39,14 @@ class Sight {
   /// The lidar on the map, in the middle of the scan.
   Eigen::Vector2d from_m() const { return (start_.translation() + 0.5 * (end_.translation() - start_.translation())).head<2>(); }
 
+  /// The scan as it is, for who keeps it. The sweep is that of Begin: nullptr where the scan says nothing.
+  const Sweep* sweep() const { return sweep_; }
+  const Eigen::Isometry3d& start() const { return start_; }  // T_map_lidar, z over the water
+  const Eigen::Isometry3d& end() const { return end_; }
+  const std::vector<Eigen::Vector2d>& ring() const { return ring_; }           // cosine and sine of the elevation
+  const std::vector<double>& unwrapped_rad() const { return unwrapped_rad_; }  // azimuth of each column, increasing
+  double max_range_m() const { return max_range_m_; }
+
   /// Returns of one segment on the map, all of the scan in the order of its cells.
   struct Return {
     Eigen::Vector2d place_m;

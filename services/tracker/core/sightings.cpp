@@ -51,17 +51,10 @@ std::vector<PieceReturns> PiecesOf(const ScanInput& scan, const Sight& sight) {
   return pieces;
 }
 
-Sightings SegmentsAsTheyAre(const ScanInput& scan) {
-  Sightings all;
-  all.seen = scan.seen;
-  for (std::size_t i = 0; i < all.seen.size(); ++i) {
-    auto& seen = all.seen[i];
-    SetAt(all.of_segment, seen.segment_id, static_cast<std::int32_t>(i));
-    seen.segment_id = static_cast<std::int32_t>(i) + 1;
-    all.places_m.push_back(seen.waterline_m.empty() ? seen.outline_m : seen.waterline_m);
-    all.heights_m.emplace_back();
-  }
-  return all;
+// A segment by itself, of which no return is known.
+void AddSegment(const Seen& segment, Sightings& sightings) {
+  SetAt(sightings.of_segment, segment.segment_id, static_cast<std::int32_t>(sightings.all.size()));
+  sightings.all.push_back({.seen = segment, .places_m = segment.waterline_m.empty() ? segment.outline_m : segment.waterline_m});
 }
 
 // The earth, and what moves.
@@ -77,36 +70,43 @@ std::vector<Ledger::Frame> FramesOf(const std::deque<Followed>& tracks, std::vec
 
 // The frame of what moves in whose outline most of a piece lies.
 std::int32_t FrameOf(const PieceReturns& piece, const std::vector<const Followed*>& owners) {
-  constexpr double kBesideM = 0.3;
+  constexpr double kBesideOutlineM = 0.3;
   for (std::size_t k = 0; k < owners.size(); ++k) {
     const auto& track = *owners[k];
     std::size_t num_in = 0;
     for (const auto& place_m : piece.places_m) {
-      if ((place_m - track.middle_m).norm() > track.radius_m + kBesideM) continue;
-      if (Contains(track.outline_m, place_m) || GapOf(track.outline_m, std::array{place_m}).distance_m < kBesideM) ++num_in;
+      if ((place_m - track.middle_m).norm() > track.radius_m + kBesideOutlineM) continue;
+      if (Contains(track.outline_m, place_m) || GapOf(track.outline_m, std::array{place_m}).distance_m < kBesideOutlineM) ++num_in;
     }
     if (2 * num_in > piece.places_m.size()) return static_cast<std::int32_t>(k) + 1;
   }
   return 0;
 }
 
-}  // namespace
-
-Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger& ledger) {
-  const auto pieces = PiecesOf(scan, sight);
-  if (pieces.empty()) return SegmentsAsTheyAre(scan);
-  std::vector<const Followed*> owners;
-  const auto frames = FramesOf(tracks, owners);
-  std::vector<Ledger::Piece> asked;
-  asked.reserve(pieces.size());
-  for (const auto& piece : pieces) {
-    const auto& segment = scan.seen[piece.segment];
-    asked.push_back({static_cast<std::int32_t>(piece.segment), segment.is_land && segment.is_sure, FrameOf(piece, owners), piece.places_m});
+// What pieces of several segments, or not of all of one, look like together.
+Seen Together(const ScanInput& scan, const std::map<std::size_t, std::size_t>& returns_of, const Sighting& sighting) {
+  const auto most = std::ranges::max_element(returns_of, {}, [](const auto& one) { return one.second; })->first;
+  Seen whole = scan.seen[most];
+  whole.outline_m = HullOf(sighting.places_m);
+  whole.waterline_m.clear();
+  whole.num_returns = static_cast<int>(sighting.places_m.size());
+  whole.top_above_water_m = std::ranges::max(sighting.heights_m);
+  double time_us = 0.0;
+  double thing = 0.0;
+  double sure = 0.0;
+  for (const auto& [segment, count] : returns_of) {
+    const double share = static_cast<double>(count) / static_cast<double>(sighting.places_m.size());
+    time_us += share * static_cast<double>((scan.seen[segment].time - scan.time).count());
+    thing += share * Logit(scan.seen[segment].thing_probability);
+    sure += share * (scan.seen[segment].is_sure ? 1.0 : 0.0);
   }
-  const auto& groups = ledger.Divide(asked, frames);
+  whole.time = scan.time + std::chrono::microseconds(std::llround(time_us));
+  whole.thing_probability = Sigmoid(thing);
+  whole.is_sure = sure > 0.5;
+  return whole;
+}
 
-  // Segments that show no return, as at the edge of a lost packet, stay as they are.
-  Sightings all;
+void AddGroups(const ScanInput& scan, const std::vector<PieceReturns>& pieces, const Ledger::Groups& groups, Sightings& sightings) {
   std::vector<std::vector<std::size_t>> pieces_of(groups.land.size());
   std::vector<std::size_t> returns_of_segment(scan.seen.size(), 0);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -115,62 +115,63 @@ Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::dequ
   }
   std::vector<std::size_t> most_of_segment(scan.seen.size(), 0);
   for (std::size_t group = 0; group < pieces_of.size(); ++group) {
+    const auto number = static_cast<std::int32_t>(sightings.all.size());
     std::map<std::size_t, std::size_t> returns_of;  // by segment
-    Seen whole;
-    std::vector<Eigen::Vector2d> places_m;
-    std::vector<double> heights_m;
+    Sighting sighting;
     for (const auto i : pieces_of[group]) {
       const auto& piece = pieces[i];
       returns_of[piece.segment] += piece.places_m.size();
-      places_m.insert(places_m.end(), piece.places_m.begin(), piece.places_m.end());
-      heights_m.insert(heights_m.end(), piece.heights_m.begin(), piece.heights_m.end());
-      SetAt(all.of_piece, piece.number, static_cast<std::int32_t>(group));
+      sighting.places_m.insert(sighting.places_m.end(), piece.places_m.begin(), piece.places_m.end());
+      sighting.heights_m.insert(sighting.heights_m.end(), piece.heights_m.begin(), piece.heights_m.end());
+      SetAt(sightings.of_piece, piece.number, number);
     }
-    const auto most = std::ranges::max_element(returns_of, {}, [](const auto& one) { return one.second; })->first;
-    const bool is_one_segment = returns_of.size() == 1 && returns_of.at(most) == returns_of_segment[most];
-    if (is_one_segment) {
-      whole = scan.seen[most];
-    } else {
-      whole = scan.seen[most];
-      whole.outline_m = HullOf(places_m);
-      whole.waterline_m.clear();
-      whole.num_returns = static_cast<int>(places_m.size());
-      whole.top_above_water_m = std::ranges::max(heights_m);
-      double time_us = 0.0;
-      double thing = 0.0;
-      double sure = 0.0;
-      for (const auto& [segment, count] : returns_of) {
-        const double share = static_cast<double>(count) / static_cast<double>(places_m.size());
-        time_us += share * static_cast<double>((scan.seen[segment].time - scan.time).count());
-        thing += share * Logit(scan.seen[segment].thing_probability);
-        sure += share * (scan.seen[segment].is_sure ? 1.0 : 0.0);
-      }
-      whole.time = scan.time + std::chrono::microseconds(std::llround(time_us));
-      whole.thing_probability = Sigmoid(thing);
-      whole.is_sure = sure > 0.5;
+    const auto& [segment, count] = *returns_of.begin();
+    const bool is_one_segment = returns_of.size() == 1 && count == returns_of_segment[segment];
+    sighting.seen = is_one_segment ? scan.seen[segment] : Together(scan, returns_of, sighting);
+    sighting.seen.is_land = groups.land[group] > 0.0 && sighting.seen.is_sure;
+    for (const auto& [one, num_returns] : returns_of) {
+      if (num_returns <= most_of_segment[one]) continue;
+      most_of_segment[one] = num_returns;
+      SetAt(sightings.of_segment, scan.seen[one].segment_id, number);
     }
-    const bool is_land = groups.land[group] > 0.0;
-    whole.is_land = is_land && whole.is_sure;
-    for (const auto& [segment, count] : returns_of) {
-      if (count <= most_of_segment[segment]) continue;
-      most_of_segment[segment] = count;
-      SetAt(all.of_segment, scan.seen[segment].segment_id, static_cast<std::int32_t>(group));
-    }
-    whole.segment_id = static_cast<std::int32_t>(group) + 1;
-    all.seen.push_back(std::move(whole));
-    all.places_m.push_back(std::move(places_m));
-    all.heights_m.push_back(std::move(heights_m));
+    sightings.all.push_back(std::move(sighting));
   }
   for (std::size_t i = 0; i < scan.seen.size(); ++i) {
-    if (returns_of_segment[i] > 0) continue;
-    const auto& seen = scan.seen[i];
-    SetAt(all.of_segment, seen.segment_id, static_cast<std::int32_t>(all.seen.size()));
-    all.places_m.push_back(seen.waterline_m.empty() ? seen.outline_m : seen.waterline_m);
-    all.heights_m.emplace_back();
-    all.seen.push_back(seen);
-    all.seen.back().segment_id = static_cast<std::int32_t>(all.seen.size());
+    if (returns_of_segment[i] == 0) AddSegment(scan.seen[i], sightings);
   }
-  return all;
+}
+
+// Where it is, and how large.
+void Measure(const Sight& sight, Sighting& sighting) {
+  const auto& outline_m = sighting.seen.outline_m;
+  for (const auto& corner : outline_m) sighting.middle_m += corner / static_cast<double>(outline_m.size());
+  for (const auto& corner : outline_m) sighting.radius_m = std::max(sighting.radius_m, (corner - sighting.middle_m).norm());
+  sighting.range_m = (sighting.middle_m - sight.from_m()).norm();
+}
+
+}  // namespace
+
+Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger& ledger) {
+  Sightings sightings;
+  const auto pieces = PiecesOf(scan, sight);
+  if (pieces.empty()) {
+    for (const auto& segment : scan.seen) AddSegment(segment, sightings);
+  } else {
+    std::vector<const Followed*> owners;
+    const auto frames = FramesOf(tracks, owners);
+    std::vector<Ledger::Piece> asked;
+    asked.reserve(pieces.size());
+    for (const auto& piece : pieces) {
+      const auto& segment = scan.seen[piece.segment];
+      asked.push_back({static_cast<std::int32_t>(piece.segment), segment.is_land && segment.is_sure, FrameOf(piece, owners), piece.places_m});
+    }
+    AddGroups(scan, pieces, ledger.Divide(asked, frames), sightings);
+  }
+  for (std::size_t i = 0; i < sightings.all.size(); ++i) {
+    sightings.all[i].seen.segment_id = static_cast<std::int32_t>(i) + 1;
+    Measure(sight, sightings.all[i]);
+  }
+  return sightings;
 }
 
 }  // namespace lookout::tracker

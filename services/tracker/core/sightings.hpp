@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "services/tracker/core/followed.hpp"
@@ -12,12 +13,27 @@
 
 namespace lookout::tracker {
 
+/// One thing that is seen, and what has become of it in this scan.
+struct Sighting {
+  enum class Use { kFree, kLand, kAssigned, kTaken, kLeftOut };
+
+  Seen seen;                              // segment_id: its number in this scan, from 1
+  std::vector<Eigen::Vector2d> places_m;  // returns, or corners where these are not known
+  std::vector<double> heights_m = {};     // of the returns, over the water; empty where these are not known
+  Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
+  double radius_m = 0.0;
+  double range_m = 0.0;             // of the middle from the lidar
+  std::optional<Sides> sides = {};  // asked for where they are needed
+  Use use = Use::kFree;
+  bool seems_moving = false;  // land that may be none: it is not remembered
+};
+
 struct Sightings {
-  std::vector<Seen> seen;                // segment_id numbers them from 1
-  std::vector<std::int32_t> of_piece;    // [pieces of the scan by number less one] index of seen; -1: there is no such piece
-  std::vector<std::int32_t> of_segment;  // [segments of the scan by id less one] index of what has most of its returns; -1: there is no such segment
-  std::vector<std::vector<Eigen::Vector2d>> places_m;  // [seen] returns, or corners
-  std::vector<std::vector<double>> heights_m;          // [seen] of the returns, over the water; empty where these are not known
+  std::vector<Sighting> all;
+  // What pieces (by number less one) and segments (by id less one) are in: an index of all; of a segment in several that with most of its returns;
+  // -1: there is no such piece or segment.
+  std::vector<std::int32_t> of_piece;
+  std::vector<std::int32_t> of_segment;
 };
 
 /// Asks the ledger. Where the scan has no labels, its segments are what is seen.

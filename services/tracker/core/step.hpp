@@ -16,6 +16,7 @@
 #include "services/tracker/core/sight.hpp"
 #include "services/tracker/core/sightings.hpp"
 #include "services/tracker/core/tracker.hpp"
+#include "services/tracker/core/watched_water.hpp"
 
 namespace lookout::tracker {
 
@@ -35,27 +36,32 @@ struct Known {
   LandMemory land = {};
   LandPieces land_pieces = {};
   ClutterMap clutter = {};
+  WatchedWater watched = {};
   std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
+  std::int64_t next_number = 1;
   std::int64_t num_outdated = 0;    // segments placed by an own position that became much better known in the scan
   std::int64_t num_over_limit = 0;  // segments that became no track
   double settled_sd_m = 0.0;        // of the own position before, where it became much better known with this scan
   bool had_sight = false;           // ever: without beams at all, misses count by themselves
 };
 
-/// Run it once; what it found is then to be asked for.
+// Cheap, before a polygon is asked: rounding counts for it.
+inline bool IsWithin(const Eigen::Vector2d& place_m, const Eigen::Vector2d& middle_m, double radius_m) {
+  constexpr double kOfRoundingM = 1e-6;
+  return (place_m - middle_m).norm() <= radius_m + kOfRoundingM;
+}
+
+/// Run it once; what it found is then to be taken. Its stages are files: step_associate, step_exist, step_move, step_land, step_merge, step_settle.
 class Step {
  public:
   Step(const TrackerParams& params, const ScanInput& scan, Known& known, double dt_s) : params_(params), scan_(scan), known_(known), dt_s_(dt_s) {}
 
   void Run();
 
-  /// As Picture has it.
-  const std::vector<std::int64_t>& track_of_piece() const { return track_of_piece_; }
-  bool is_sight_known() const { return is_sight_known_; }
-  const std::vector<std::int32_t>& land_ids() const { return land_ids_; }
-  const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
+  /// All but tracks and what follows of them.
+  Picture TakePicture();
 
  private:
   struct Near {
@@ -63,11 +69,9 @@ class Step {
     std::size_t track;
     std::size_t seen;
   };
-  enum class Use { kFree, kLand, kAssigned, kTaken, kLeftOut };
   Eigen::Vector2d ToVessel(const Eigen::Vector2d& place_m) const;
   void Predict();
   static void Place(Followed& track);
-  void FindPlaces();
   void FindLand();
   void FollowLandPieces();
   bool IsLand(const Followed& track) const;
@@ -75,25 +79,29 @@ class Step {
   void Look();
   void LeaveOutdated();
   void Settle();
-  void FindCommonStep();
-  double CostOf(const Followed& track, std::size_t i) const;
-  const Sides& SidesOf(std::size_t i) const;
+  double CostOf(const Followed& track, std::size_t i);
+  const Sides& SidesOf(std::size_t i);
   void AssignBodies();
   template <typename Take>
   void TakeNearest(std::vector<Near>& pairs, const Take& take);
-  void AssignLost();
   void AssignRest();
   void HitWhole(Followed& track, std::size_t i);
-  void Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides, bool is_lost = false);
+  void Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides);
   void ChooseFrame(Followed& track);
   static void Remember(Followed& track, bool is_seen);
   void Miss(Followed& track);
   void FindInside();
   bool IsClear(std::size_t i) const;
+  void AskWatched(Followed& track) const;
   void Begin();
+  void ConfirmWhereLikely(Followed& track, std::size_t i);
+  void Confirm(Followed& track);
+  void Move(Followed& track, std::size_t i, const Seen& seen, const Sides& sides);
+  void Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen::Vector2d& expected_m);
   void FeedLand();
   void EndLand();
   void Merge();
+  void EndUnseen();
   void Label();
   bool Touch(const Followed& one, const Followed& other) const;
   bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const;
@@ -109,16 +117,10 @@ class Step {
   double dt_s_;
   bool is_sight_known_ = false;
   bool has_left_out_ = false;  // segments, since they are outdated
-  Eigen::Vector2d common_step_m_ = Eigen::Vector2d::Zero();
-  Sightings sightings_;
+  std::vector<Sighting> sightings_;
+  std::vector<std::int32_t> sighting_of_piece_;
+  std::vector<std::int32_t> sighting_of_segment_;
   std::vector<std::int64_t> track_of_piece_;
-  std::vector<Use> use_;                             // [seen]
-  std::vector<Eigen::Vector2d> middle_m_;            // [seen]
-  std::vector<double> radius_m_;                     // [seen]
-  mutable std::vector<std::optional<Sides>> sides_;  // [seen]
-  std::vector<double> ranges_m_;                     // [seen] from the lidar
-  std::vector<double> land_share_;                   // [seen]
-  std::vector<bool> seems_moving_;                   // [seen] land that may be none: it is not remembered
   std::vector<std::int32_t> land_ids_;
   std::vector<std::pair<std::int64_t, std::int64_t>> merged_;
 };

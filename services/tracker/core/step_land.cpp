@@ -30,40 +30,40 @@ bool IsKnown(const Followed& track) {
 
 // What the segmenter calls land, and what lies where land is remembered; but nothing that has been seen to move.
 void Step::FindLand() {
-  land_share_.clear();
-  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-    const auto& seen = sightings_.seen[i];
-    land_share_.push_back(known_.land.Share(sightings_.places_m[i], kMostLandPlaces));
-    if (use_[i] == Use::kLeftOut) continue;
-    if ((seen.is_land && seen.is_sure) || land_share_.back() >= kLandShare) use_[i] = Use::kLand;
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    const auto& seen = sightings_[i].seen;
+    const double land_share = known_.land.Share(sightings_[i].places_m, kMostLandPlaces);
+    if (sightings_[i].use == Sighting::Use::kLeftOut) continue;
+    if ((seen.is_land && seen.is_sure) || land_share >= kLandShare) sightings_[i].use = Sighting::Use::kLand;
   }
   FollowLandPieces();
   for (const auto& track : known_.tracks) {
     if (!track.is_confirmed || !track.body || !HasMoved(track)) continue;
-    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-      if (use_[i] != Use::kLand || radius_m_[i] > 2.0 * track.radius_m + 1.0) continue;
-      if ((middle_m_[i] - track.middle_m).norm() > track.radius_m + radius_m_[i]) continue;
-      const auto both = Intersection(sightings_.seen[i].outline_m, track.outline_m);
-      if (!both.empty() && AreaOf(both) >= 0.5 * AreaOf(sightings_.seen[i].outline_m)) use_[i] = Use::kFree;
+    for (std::size_t i = 0; i < sightings_.size(); ++i) {
+      if (sightings_[i].use != Sighting::Use::kLand || sightings_[i].radius_m > 2.0 * track.radius_m + 1.0) continue;
+      if ((sightings_[i].middle_m - track.middle_m).norm() > track.radius_m + sightings_[i].radius_m) continue;
+      const auto both = Intersection(sightings_[i].seen.outline_m, track.outline_m);
+      if (!both.empty() && AreaOf(both) >= 0.5 * AreaOf(sightings_[i].seen.outline_m)) sightings_[i].use = Sighting::Use::kFree;
     }
   }
 }
 
 void Step::FollowLandPieces() {
-  seems_moving_.assign(sightings_.seen.size(), false);
   std::vector<LandPieces::Seen> pieces;
-  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-    const auto& seen = sightings_.seen[i];
-    if (use_[i] != Use::kLand || !seen.is_sure || radius_m_[i] > LandPieces::kGreatestRadiusM || sightings_.places_m[i].size() < kLeastPieceReturns)
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    const auto& seen = sightings_[i].seen;
+    if (sightings_[i].use != Sighting::Use::kLand || !seen.is_sure || sightings_[i].radius_m > LandPieces::kGreatestRadiusM ||
+        sightings_[i].places_m.size() < kLeastPieceReturns)
       continue;
-    if (std::ranges::any_of(known_.tracks, [&](const Followed& track) { return track.is_confirmed && Contains(track.outline_m, middle_m_[i]); }))
+    if (std::ranges::any_of(known_.tracks,
+                            [&](const Followed& track) { return track.is_confirmed && Contains(track.outline_m, sightings_[i].middle_m); }))
       continue;
-    pieces.push_back({i, seen.outline_m, sightings_.places_m[i], sightings_.heights_m[i], middle_m_[i], radius_m_[i], ranges_m_[i],
-                      seen.covariance_relative_m2, SidesOf(i)});
+    pieces.push_back({i, seen.outline_m, sightings_[i].places_m, sightings_[i].heights_m, sightings_[i].middle_m, sightings_[i].radius_m,
+                      sightings_[i].range_m, seen.covariance_relative_m2, SidesOf(i)});
   }
   std::vector<bool> seems_moving;
   for (auto& proven : known_.land_pieces.Update(pieces, known_.sight, scan_.end_time, seems_moving)) {
-    const auto& seen = sightings_.seen[proven.index];
+    const auto& seen = sightings_[proven.index].seen;
     Followed track;
     track.id = known_.next_id++;
     track.first = proven.first;
@@ -77,10 +77,11 @@ void Step::FollowLandPieces() {
     track.mean_thing = Logit(kPieceThing);
     track.seen_m = track.middle_m;
     track.num_moving = kMovesFor;
-    track.is_confirmed = track.is_proven = true;
+    track.is_proven = true;
+    Confirm(track);
     known_.tracks.push_back(std::move(track));
   }
-  for (std::size_t k = 0; k < pieces.size(); ++k) seems_moving_[pieces[k].index] = seems_moving[k];
+  for (std::size_t k = 0; k < pieces.size(); ++k) sightings_[pieces[k].index].seems_moving = seems_moving[k];
 }
 
 // What the ledger takes land to be lies in it by itself no more, unless it was seen to move: then it is a boat that came alongside, for as long as
@@ -95,11 +96,14 @@ bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
   constexpr int kSeenFor = 10;  // scans
   constexpr double kBesideM = 2.0;
   if (track.num_hits >= kSeenFor) return false;
-  for (std::size_t k = 0; k < sightings_.seen.size(); ++k) {
-    if (!sightings_.seen[k].is_land || (middle_m_[k] - middle_m_[i]).norm() > radius_m_[k] + radius_m_[i] + kBesideM) continue;
+  for (std::size_t k = 0; k < sightings_.size(); ++k) {
+    if (!sightings_[k].seen.is_land ||
+        (sightings_[k].middle_m - sightings_[i].middle_m).norm() > sightings_[k].radius_m + sightings_[i].radius_m + kBesideM)
+      continue;
     // Not the hull of a bay: its shore.
-    if (std::ranges::any_of(sightings_.places_m[k],
-                            [&](const Eigen::Vector2d& place_m) { return (place_m - middle_m_[i]).norm() < radius_m_[i] + kBesideM; }))
+    if (std::ranges::any_of(sightings_[k].places_m, [&](const Eigen::Vector2d& place_m) {
+          return (place_m - sightings_[i].middle_m).norm() < sightings_[i].radius_m + kBesideM;
+        }))
       return true;
   }
   return false;
@@ -113,22 +117,23 @@ void Step::EndLand() {
 
 void Step::FeedLand() {
   known_.land.AdvanceTo(scan_.end_time);
-  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-    const auto& seen = sightings_.seen[i];
-    if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);
-    if (use_[i] == Use::kLeftOut || !seen.is_sure || seems_moving_[i]) continue;
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    const auto& seen = sightings_[i].seen;
+    if (sightings_[i].use == Sighting::Use::kLand) land_ids_.push_back(seen.segment_id);
+    if (sightings_[i].use == Sighting::Use::kLeftOut || !seen.is_sure || sightings_[i].seems_moving) continue;
     std::vector<const Followed*> near;
     for (const auto& track : known_.tracks) {
-      if (IsKnown(track) && !IsLand(track) && (track.middle_m - middle_m_[i]).norm() < track.radius_m + radius_m_[i]) near.push_back(&track);
+      if (IsKnown(track) && !IsLand(track) && (track.middle_m - sightings_[i].middle_m).norm() < track.radius_m + sightings_[i].radius_m)
+        near.push_back(&track);
     }
-    const std::size_t step = 1 + sightings_.places_m[i].size() / kMostFed;
+    const std::size_t step = 1 + sightings_[i].places_m.size() / kMostFed;
     std::vector<Eigen::Vector2d> fed_m;
     std::vector<double> tops_m;
-    for (std::size_t k = 0; k < sightings_.places_m[i].size(); k += step) {
-      const auto& place_m = sightings_.places_m[i][k];
+    for (std::size_t k = 0; k < sightings_[i].places_m.size(); k += step) {
+      const auto& place_m = sightings_[i].places_m[k];
       if (seen.is_land && std::ranges::any_of(near, [&](const Followed* track) { return Contains(track->outline_m, place_m); })) continue;
       fed_m.push_back(place_m);
-      if (!sightings_.heights_m[i].empty()) tops_m.push_back(sightings_.heights_m[i][k]);
+      if (!sightings_[i].heights_m.empty()) tops_m.push_back(sightings_[i].heights_m[k]);
     }
     const bool is_known = std::ranges::any_of(
         near, [&](const Followed* track) { return std::ranges::find(track->segment_ids, seen.segment_id) != track->segment_ids.end(); });

@@ -31,10 +31,10 @@ bool Step::Touch(const Followed& one, const Followed& other) const {
   constexpr std::size_t kMostTouching = 200;
   const auto places = [this](const Followed& track) {
     std::vector<Eigen::Vector2d> found;
-    for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-      if (std::ranges::find(track.segment_ids, sightings_.seen[i].segment_id) == track.segment_ids.end()) continue;
-      const std::size_t step = 1 + sightings_.places_m[i].size() / kMostTouching;
-      for (std::size_t k = 0; k < sightings_.places_m[i].size(); k += step) found.push_back(sightings_.places_m[i][k]);
+    for (std::size_t i = 0; i < sightings_.size(); ++i) {
+      if (std::ranges::find(track.segment_ids, sightings_[i].seen.segment_id) == track.segment_ids.end()) continue;
+      const std::size_t step = 1 + sightings_[i].places_m.size() / kMostTouching;
+      for (std::size_t k = 0; k < sightings_[i].places_m.size(); k += step) found.push_back(sightings_[i].places_m[k]);
     }
     return found;
   };
@@ -125,6 +125,7 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   if (IsFoundAgain(one, other)) return kFoundS;
   const bool is_inside = (one.is_inside_now && one.inside_of == other.id) || (other.is_inside_now && other.inside_of == one.id);
   if (!is_inside && (one.middle_m - other.middle_m).norm() > one.radius_m + other.radius_m + kNearM) return kNeverS;
+  if (is_inside) return kFoundS;
   const double area = AreaOf(one.outline_m);
   const double other_area = AreaOf(other.outline_m);
   const Followed& larger = area >= other_area ? one : other;
@@ -132,7 +133,7 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   const auto both = Intersection(one.outline_m, other.outline_m);
   const double shared_m2 = both.empty() ? 0.0 : std::max(1e-9, AreaOf(both));
   // Longer where both are well known, as a boat at a dock with which it is segmented for a while.
-  if ((is_inside || (!both.empty() && shared_m2 >= 0.5 * std::min(area, other_area))) && !(one.is_seen_now && other.is_seen_now)) {
+  if (!both.empty() && shared_m2 >= 0.5 * std::min(area, other_area) && !(one.is_seen_now && other.is_seen_now)) {
     const int num_hits = one.is_confirmed == other.is_confirmed ? std::min(one.num_hits, other.num_hits) : (one.is_confirmed ? one : other).num_hits;
     return std::clamp(kPerHitS * num_hits, kShortestS, kLongestS);
   }
@@ -143,7 +144,6 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
 
 // The second becomes one with the first, by the older name.
 void Step::Join(Followed& one, Followed& other) {
-  merged_.emplace_back(other.id, one.id);
   const bool is_part = one.is_seen_now && other.is_seen_now;
   // What is confirmed is not replaced by what is not.
   const bool is_larger = AreaOf(other.outline_m) > AreaOf(one.outline_m);
@@ -153,16 +153,23 @@ void Step::Join(Followed& one, Followed& other) {
     if (!is_part && IsMoving(one) && !IsMoving(other)) other.body->MoveAs(*one.body);
     std::swap(one, other);
     std::swap(one.id, other.id);
+    std::swap(one.number, other.number);
     std::swap(one.parents, other.parents);
     std::swap(one.children, other.children);
     std::swap(one.first, other.first);
+    std::swap(one.watched, other.watched);
   }
   one.is_proven = one.is_proven || other.is_proven;
   one.segment_ids.insert(one.segment_ids.end(), other.segment_ids.begin(), other.segment_ids.end());
   other.segment_ids.clear();
   if (one.overtaking == Encounter::kNone) one.overtaking = other.overtaking;
-  Followed::Relate(one.parents, other.id, scan_.end_time);
-  Followed::Relate(other.children, one.id, scan_.end_time);
+  // The lower number is the older name.
+  if (one.number == 0 || (other.number > 0 && other.number < one.number)) std::swap(one.number, other.number);
+  merged_.emplace_back(other.PublicId(), one.PublicId());
+  if (other.number > 0) {
+    Followed::Relate(one.parents, other.number, scan_.end_time);
+    Followed::Relate(other.children, one.number, scan_.end_time);
+  }
   if (is_part && other.Existence() > 0.5) {
     one.body->Include(other.outline_m);
     Place(one);

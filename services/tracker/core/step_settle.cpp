@@ -14,9 +14,9 @@ void Step::LeaveOutdated() {
   const auto own_m2 = [](const Pose& pose) { return std::max(0.0, pose.covariance(0, 0) + pose.covariance(1, 1)); };
   const double limit_m2 = kTimes * own_m2(*scan_.own) + kLeastM2;
   if (scan_.own_at_start && own_m2(*scan_.own_at_start) <= limit_m2) return;
-  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-    if ((sightings_.seen[i].covariance_m2 - sightings_.seen[i].covariance_relative_m2).trace() <= limit_m2) continue;
-    use_[i] = Use::kLeftOut;
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    if ((sightings_[i].seen.covariance_m2 - sightings_[i].seen.covariance_relative_m2).trace() <= limit_m2) continue;
+    sightings_[i].use = Sighting::Use::kLeftOut;
     has_left_out_ = true;
     ++known_.num_outdated;
   }
@@ -32,13 +32,15 @@ void Step::Settle() {
   constexpr std::size_t kMost = 40;  // tracks, and segments: each pair is tried on all
   const double sd_m = std::exchange(known_.settled_sd_m, 0.0);
   if (sd_m == 0.0) return;
+  known_.watched.Clear();
   std::vector<Eigen::Vector2d> from_m;
   std::vector<Eigen::Vector2d> to_m;
   for (const auto& track : known_.tracks) {
     if (track.body && track.UnseenS(scan_.end_time) < 1.5 * dt_s_ && from_m.size() < kMost) from_m.push_back(track.seen_m);
   }
-  for (std::size_t i = 0; i < sightings_.seen.size() && to_m.size() < kMost; ++i) {
-    if (use_[i] == Use::kFree && sightings_.seen[i].is_sure && !sightings_.seen[i].is_land) to_m.push_back(middle_m_[i]);
+  for (std::size_t i = 0; i < sightings_.size() && to_m.size() < kMost; ++i) {
+    if (sightings_[i].use == Sighting::Use::kFree && sightings_[i].seen.is_sure && !sightings_[i].seen.is_land)
+      to_m.push_back(sightings_[i].middle_m);
   }
   const auto nearest_to = [&](const Eigen::Vector2d& place_m) {
     const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - place_m).squaredNorm(); });
@@ -76,35 +78,6 @@ void Step::Settle() {
     track.body->Loosen(is_sure && nearest_to(track.seen_m) != nullptr ? kLooseM * kLooseM : sd_m * sd_m);
     Place(track);
   }
-}
-
-// From scan to scan all that stands may step together: the own position and heading settle. Half of it steps by less and half by more.
-void Step::FindCommonStep() {
-  constexpr double kReachM = 1.5;
-  constexpr std::size_t kLeast = 5;
-  constexpr std::size_t kMost = 100;
-  std::vector<Eigen::Vector2d> to_m;
-  for (std::size_t i = 0; i < sightings_.seen.size(); ++i) {
-    if (sightings_.seen[i].is_sure) to_m.push_back(middle_m_[i]);
-  }
-  std::vector<double> east;
-  std::vector<double> north;
-  std::size_t num_asked = 0;
-  for (const auto& track : known_.tracks) {
-    if (!track.is_confirmed || !track.body || track.body->IsMoving(0.5) || track.UnseenS(scan_.end_time) > 1.5 * dt_s_) continue;
-    if (++num_asked > kMost) break;
-    const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - track.seen_m).squaredNorm(); });
-    if (nearest == to_m.end() || (*nearest - track.seen_m).norm() >= kReachM) continue;
-    east.push_back(nearest->x() - track.seen_m.x());
-    north.push_back(nearest->y() - track.seen_m.y());
-  }
-  if (east.size() < kLeast) return;
-  const auto median = [](std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-  };
-  common_step_m_ = {median(east), median(north)};
 }
 
 }  // namespace lookout::tracker

@@ -5,14 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "common/core/elementary.hpp"
 #include "common/core/health.hpp"
 #include "services/tracker/core/encounter.hpp"
-#include "services/tracker/core/land_approach.hpp"
-#include "services/tracker/core/outline.hpp"
+#include "services/tracker/core/picture.hpp"
 #include "services/tracker/core/scan.hpp"
 
 namespace lookout::tracker {
@@ -26,57 +24,6 @@ struct TrackerParams {
   double moving_probability = 0.95;   // above which a track moves
   double confirm_probability = 0.95;  // existence
   double end_probability = 0.01;
-};
-
-inline constexpr std::int64_t kNoTrack = -1;  // of a piece
-
-// Numbers of both are those of the wire.
-enum class TrackStatus : std::int32_t { kTentative = 1, kConfirmed = 2, kCoasting = 3, kLost = 4 };
-enum class TrackKind : std::int32_t { kObstacle = 0, kBuoy = 1, kBoat = 2, kStructure = 3, kUnknown = 4 };
-
-/// One track after a scan, propagated to its end; as in track_t, which says what the members mean.
-struct Track {
-  std::int64_t id = 0;
-  TrackStatus status = TrackStatus::kTentative;
-  TrackKind kind = TrackKind::kUnknown;
-  Utime first;
-  Utime seen;
-  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
-  Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  Eigen::Matrix2d covariance_relative_m2 = Eigen::Matrix2d::Zero();
-  double turn_rate_radps = kNan;
-  double existence_probability = 0.0;
-  double moving_probability = 0.0;
-  Rectangle rectangle;
-  double top_above_water_m = 0.0;
-  double seen_share = 0.0;
-  std::vector<Eigen::Vector2d> outline_m;
-  std::vector<std::int32_t> segment_ids;
-  std::vector<std::int64_t> parents;
-  std::vector<std::int64_t> children;
-  int num_seen = 0;
-  int num_looks = 0;
-  double mean_returns = 0.0;
-  double range_m = 0.0;
-  double bearing_rad = 0.0;
-  ClosestApproach approach;
-  Encounter encounter = Encounter::kNone;
-  std::int32_t known_days = 0;  // as the given map says; 0: not known
-};
-
-/// What is known after a scan.
-struct Picture {
-  bool is_sight_known = false;
-  std::vector<Track> tracks;  // by id
-  std::vector<std::int32_t> land_segment_ids;
-  /// What each piece of the scan is of, by its number less one: the id of a track, 0 land, kNoTrack nothing that is followed. Of a Sweep without
-  /// pieces by the id of its segment less one.
-  std::vector<std::int64_t> track_of_piece;
-  std::vector<Eigen::Vector2d> waterline_m;   // every tenth scan, else empty
-  std::optional<LandApproach> land_approach;  // nullopt: the own boat hardly moves, its pose is not known, or no land is near its way
-  /// Tracks that became part of another in this scan (from, to).
-  std::vector<std::pair<std::int64_t, std::int64_t>> merged;
 };
 
 struct OwnMap;

@@ -10,6 +10,10 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::size_t kNoOffset = 255;
+// Of a key.
+constexpr unsigned kBits = 16;
+constexpr std::uint64_t kMask = 0xFFFF;
+constexpr std::int32_t kMostCellsOff = 32'767;
 
 // The number of an offset of the half disc: (0, 0), and what comes after it by x, then y.
 struct OffsetTable {
@@ -37,10 +41,12 @@ std::size_t VoteGrid::HashOf::operator()(const Key& key) const {
   return static_cast<std::size_t>(mixed ^ (mixed >> 32U));
 }
 
-void VoteGrid::Begin(std::span<const std::int64_t> frame_ids, std::int64_t num_scans) {
+void VoteGrid::Begin(std::span<const std::int64_t> frame_ids, std::span<const std::int32_t> segment_of_piece, std::int64_t num_scans) {
   static_assert(kOffsetTable.count == kOffsets);
   ++scan_;
   frames_.assign(frame_ids.begin(), frame_ids.end());
+  first_.assign(frame_ids.size(), std::nullopt);
+  segment_of_piece_ = segment_of_piece;
   returns_.clear();
   // All at once, now and then.
   if (scan_ % std::max<std::int64_t>(1, num_scans / 4) != 0 && slot_of_.size() < kMostCells) return;
@@ -55,28 +61,46 @@ void VoteGrid::Begin(std::span<const std::int64_t> frame_ids, std::int64_t num_s
   }
 }
 
-void VoteGrid::Add(std::int32_t frame, const Eigen::Vector2d& place_m, std::int32_t piece, std::int32_t segment) {
+void VoteGrid::Add(std::int32_t frame, const Eigen::Vector2d& place_m, std::int32_t piece) {
   const Eigen::Vector2d cells = place_m / cell_m_;
-  returns_.push_back({frame, static_cast<std::int32_t>(std::floor(cells.x())), static_cast<std::int32_t>(std::floor(cells.y())), piece, segment});
+  const CellNumber cell{static_cast<std::int32_t>(std::floor(cells.x())), static_cast<std::int32_t>(std::floor(cells.y()))};
+  auto& first = first_[static_cast<std::size_t>(frame)];
+  if (!first) first = cell;
+  const auto off = [](std::int32_t number, std::int32_t from) {
+    return static_cast<std::uint64_t>(std::clamp(number - from, -kMostCellsOff, kMostCellsOff) + kMostCellsOff);
+  };
+  const std::uint64_t key = static_cast<std::uint64_t>(frame) << (3 * kBits) | off(cell.x, first->x) << (2 * kBits) | off(cell.y, first->y) << kBits |
+                            static_cast<std::uint64_t>(piece);
+  if (returns_.empty() || returns_.back().key != key) returns_.push_back({key, 0});
+  ++returns_.back().count;
 }
 
 void VoteGrid::FindHeld() {
   held_.clear();
   entries_.clear();
-  const auto order = [](const Return& one) { return std::tuple(one.frame, one.x, one.y, one.piece); };
-  std::ranges::sort(returns_, {}, order);
-  for (const auto& one : returns_) {
-    if (held_.empty() || std::tuple(held_.back().frame, held_.back().x, held_.back().y) != std::tuple(one.frame, one.x, one.y)) {
-      const auto first = static_cast<std::int32_t>(entries_.size());
-      held_.push_back({.frame = one.frame, .x = one.x, .y = one.y, .first = first, .end = first});
+  std::ranges::sort(returns_, {}, &Returns::key);
+  std::uint64_t last = 0;  // frame and cell
+  for (const auto& [key, count] : returns_) {
+    const std::uint64_t cell_key = key >> kBits;
+    const auto piece = static_cast<std::int32_t>(key & kMask);
+    if (held_.empty() || cell_key != last) {
+      const auto number = static_cast<std::int32_t>(entries_.size());
+      const auto frame = static_cast<std::int32_t>(key >> (3 * kBits));
+      const auto& first = *first_[static_cast<std::size_t>(frame)];
+      held_.push_back({.frame = frame,
+                       .x = first.x + static_cast<std::int32_t>(key >> (2 * kBits) & kMask) - kMostCellsOff,
+                       .y = first.y + static_cast<std::int32_t>(key >> kBits & kMask) - kMostCellsOff,
+                       .first = number,
+                       .end = number});
+      last = cell_key;
     }
     auto& cell = held_.back();
-    if (cell.first == cell.end || entries_.back().piece != one.piece) {
-      entries_.push_back({one.piece, one.segment, 0});
+    if (cell.first == cell.end || entries_.back().piece != piece) {
+      entries_.push_back({piece, segment_of_piece_[static_cast<std::size_t>(piece)], 0});
       ++cell.end;
     }
-    ++entries_.back().count;
-    ++cell.count;
+    entries_.back().count += count;
+    cell.count += count;
   }
   if (content_ == Content::kMostOf) KeepMajority();
 }

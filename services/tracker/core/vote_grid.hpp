@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -68,10 +69,12 @@ class VoteGrid {
   };
 
   /// Begins a scan. What was not seen in the last num_scans is forgotten.
-  /// @param frame_ids  frames of this scan
-  void Begin(std::span<const std::int64_t> frame_ids, std::int64_t num_scans);
-  /// @param frame  index of the frames of Begin
-  void Add(std::int32_t frame, const Eigen::Vector2d& place_m, std::int32_t piece, std::int32_t segment);
+  /// @param frame_ids         frames of this scan, at most 65 536
+  /// @param segment_of_piece  at most 65 536 pieces
+  void Begin(std::span<const std::int64_t> frame_ids, std::span<const std::int32_t> segment_of_piece, std::int64_t num_scans);
+  /// @param frame, piece  indices of those of Begin
+  /// @param place_m       at most 32 767 cells from the first of its frame in this scan; farther counts as so far
+  void Add(std::int32_t frame, const Eigen::Vector2d& place_m, std::int32_t piece);
   /// Ends the scan: each pair votes, 1 for one segment, -1 for two; of cells with several, between.
   /// @param fade  what earlier votes count
   void Vote(float fade, Weight weight);
@@ -108,12 +111,14 @@ class VoteGrid {
     MeanVote own;
     std::array<MeanVote, kOffsets> votes{};
   };
-  struct Return {
-    std::int32_t frame = 0;
+  struct CellNumber {
     std::int32_t x = 0;
     std::int32_t y = 0;
-    std::int32_t piece = 0;
-    std::int32_t segment = 0;
+  };
+  // Returns of one piece in one cell that follow each other.
+  struct Returns {
+    std::uint64_t key = 0;  // frame, x, y from that of the frame's first return, piece: 16 bits each
+    std::int32_t count = 0;
   };
 
   void FindHeld();
@@ -127,10 +132,12 @@ class VoteGrid {
   Content content_;
   std::int64_t scan_ = 0;
   std::vector<std::int64_t> frames_;
+  std::vector<std::optional<CellNumber>> first_;  // [frames] cell of the first return
+  std::span<const std::int32_t> segment_of_piece_;
   std::unordered_map<Key, std::int32_t, HashOf> slot_of_;  // looked up only: its order decides nothing
   std::vector<Cell> cells_;
   std::vector<std::int32_t> free_;
-  std::vector<Return> returns_;
+  std::vector<Returns> returns_;
   std::vector<Entry> entries_;
   std::vector<Held> held_;
   std::vector<Pair> pairs_;

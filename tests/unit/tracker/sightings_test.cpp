@@ -77,13 +77,13 @@ TEST(Sightings, OfSegmentsAsTheyAreEqualThemToTheBit) {
     for (auto& seen : input.seen) seen.time -= std::chrono::milliseconds(10 * seen.segment_id);
     input.seen[1].is_sure = false;
     const auto all = lookout.Ask(input);
-    ASSERT_EQ(all.seen.size(), 3U);
+    ASSERT_EQ(all.all.size(), 3U);
     // Pieces come in the order of their first return, clockwise from the bow: so does what is seen.
     for (int thing = 1; thing <= 3; ++thing) {
       const auto index = static_cast<std::size_t>(all.of_segment.at(static_cast<std::size_t>(thing - 1)));
-      ExpectSame(all.seen.at(index), input.seen[static_cast<std::size_t>(thing - 1)]);
-      EXPECT_EQ(all.seen.at(index).segment_id, static_cast<int>(index) + 1);
-      EXPECT_EQ(static_cast<int>(all.places_m[index].size()), all.seen[index].num_returns);
+      ExpectSame(all.all.at(index).seen, input.seen[static_cast<std::size_t>(thing - 1)]);
+      EXPECT_EQ(all.all.at(index).seen.segment_id, static_cast<int>(index) + 1);
+      EXPECT_EQ(static_cast<int>(all.all[index].places_m.size()), all.all[index].seen.num_returns);
     }
     EXPECT_EQ(all.of_piece, all.of_segment);  // as they are numbered here
   }
@@ -99,16 +99,16 @@ TEST(Sightings, PiecesOfTwoSegmentsBecomeOne) {
   bow.time = input.time + std::chrono::milliseconds(20);
   stern.time = input.time + std::chrono::milliseconds(60);
   const auto all = lookout.Ask(input);
-  ASSERT_EQ(all.seen.size(), 2U);
+  ASSERT_EQ(all.all.size(), 2U);
   const auto boat = static_cast<std::size_t>(all.of_piece.at(0));
   EXPECT_EQ(all.of_piece[1], all.of_piece[0]);
   EXPECT_NE(all.of_piece[2], all.of_piece[0]);
   EXPECT_EQ(all.of_segment, all.of_piece);
-  const auto& whole = all.seen[boat];
+  const auto& whole = all.all[boat].seen;
   EXPECT_EQ(whole.num_returns, bow.num_returns + stern.num_returns);
-  EXPECT_EQ(static_cast<int>(all.places_m[boat].size()), whole.num_returns);
-  EXPECT_EQ(all.heights_m[boat].size(), all.places_m[boat].size());
-  for (const auto& place_m : all.places_m[boat]) EXPECT_TRUE(Contains(whole.outline_m, place_m));
+  EXPECT_EQ(static_cast<int>(all.all[boat].places_m.size()), whole.num_returns);
+  EXPECT_EQ(all.all[boat].heights_m.size(), all.all[boat].places_m.size());
+  for (const auto& place_m : all.all[boat].places_m) EXPECT_TRUE(Contains(whole.outline_m, place_m));
   EXPECT_NEAR(LengthOf(whole), 8.0, 0.3);
   EXPECT_NEAR(whole.top_above_water_m, std::max(bow.top_above_water_m, stern.top_above_water_m), 0.01);
   const double share = static_cast<double>(bow.num_returns) / whole.num_returns;
@@ -124,10 +124,10 @@ TEST(Sightings, OneSegmentBecomesTwo) {
   const auto input = lookout.Next(Cuts(false));
   ASSERT_EQ(input.seen.size(), 2U);
   const auto all = lookout.Ask(input);
-  ASSERT_EQ(all.seen.size(), 3U);
+  ASSERT_EQ(all.all.size(), 3U);
   ASSERT_NE(all.of_piece.at(0), all.of_piece.at(1));
-  const auto& bow = all.seen[static_cast<std::size_t>(all.of_piece[0])];
-  const auto& stern = all.seen[static_cast<std::size_t>(all.of_piece[1])];
+  const auto& bow = all.all[static_cast<std::size_t>(all.of_piece[0])].seen;
+  const auto& stern = all.all[static_cast<std::size_t>(all.of_piece[1])].seen;
   EXPECT_EQ(bow.num_returns + stern.num_returns, input.seen[0].num_returns);
   EXPECT_NEAR(LengthOf(bow), 5.0, 0.3);
   EXPECT_NEAR(LengthOf(stern), 3.0, 0.3);
@@ -151,14 +151,14 @@ TEST(Sightings, WithoutLabelsOrBeamsAreTheSegments) {
     }
     std::ranges::rotate(input.seen, input.seen.begin() + 1);
     const auto all = lookout.Ask(input);
-    ASSERT_EQ(all.seen.size(), input.seen.size());
+    ASSERT_EQ(all.all.size(), input.seen.size());
     EXPECT_TRUE(all.of_piece.empty());
     EXPECT_EQ(all.of_segment, (Numbers{2, 0, 1}));
-    for (std::size_t i = 0; i < all.seen.size(); ++i) {
-      ExpectSame(all.seen[i], input.seen[i]);
-      EXPECT_EQ(all.seen[i].segment_id, static_cast<int>(i) + 1);
-      EXPECT_EQ(all.places_m[i], input.seen[i].outline_m);
-      EXPECT_TRUE(all.heights_m[i].empty());
+    for (std::size_t i = 0; i < all.all.size(); ++i) {
+      ExpectSame(all.all[i].seen, input.seen[i]);
+      EXPECT_EQ(all.all[i].seen.segment_id, static_cast<int>(i) + 1);
+      EXPECT_EQ(all.all[i].places_m, input.seen[i].outline_m);
+      EXPECT_TRUE(all.all[i].heights_m.empty());
     }
   }
 }
@@ -171,7 +171,7 @@ TEST(Sightings, WithoutPiecesASegmentIsOne) {
     auto input = lookout.Next(Cuts(scan == 19));
     input.sweep->piece.clear();
     last = lookout.Ask(input);
-    EXPECT_EQ(last.seen.size(), 2U) << "scan " << scan;
+    EXPECT_EQ(last.all.size(), 2U) << "scan " << scan;
     EXPECT_EQ(last.of_piece, last.of_segment) << "scan " << scan;
   }
 }
@@ -184,9 +184,9 @@ TEST(Sightings, ASegmentWithoutReturnsStaysAsItIs) {
   hidden.num_returns = 4;
   input.seen.insert(input.seen.begin(), hidden);
   const auto all = lookout.Ask(input);
-  ASSERT_EQ(all.seen.size(), 4U);
-  ExpectSame(all.seen.back(), hidden);
-  EXPECT_EQ(all.seen.back().segment_id, 4);
+  ASSERT_EQ(all.all.size(), 4U);
+  ExpectSame(all.all.back().seen, hidden);
+  EXPECT_EQ(all.all.back().seen.segment_id, 4);
   EXPECT_EQ(all.of_segment.at(8), 3);
   EXPECT_EQ(all.of_segment.at(5), -1);
 }
@@ -196,12 +196,12 @@ TEST(Sightings, ReturnsOfWhatIsNoObstacleAreOfNothing) {
   auto input = lookout.Next(Cuts(true));
   std::erase_if(input.seen, [](const Seen& seen) { return seen.segment_id == kStern; });
   const auto all = lookout.Ask(input);
-  EXPECT_EQ(all.seen.size(), 2U);
+  EXPECT_EQ(all.all.size(), 2U);
   ASSERT_GE(all.of_piece.size(), 3U);
   EXPECT_EQ(all.of_piece[kStern - 1], -1);
   EXPECT_EQ(all.of_segment[kStern - 1], -1);
   input.seen.clear();
-  EXPECT_TRUE(lookout.Ask(input).seen.empty());
+  EXPECT_TRUE(lookout.Ask(input).all.empty());
 }
 
 TEST(Sightings, EachReturnIsInOneOfThem) {
@@ -210,15 +210,15 @@ TEST(Sightings, EachReturnIsInOneOfThem) {
   for (int scan = 0; scan < 30; ++scan) {
     const auto input = lookout.Next(Cuts(random() % 2 == 0));
     const auto all = lookout.Ask(input);
-    std::vector<std::size_t> num_returns(all.seen.size(), 0);
+    std::vector<std::size_t> num_returns(all.all.size(), 0);
     for (const auto& one : lookout.ReturnsOf(input)) {
       const auto index = static_cast<std::size_t>(all.of_piece.at(static_cast<std::size_t>(one.piece - 1)));
       ++num_returns[index];
-      EXPECT_NE(std::ranges::find(all.places_m[index], one.place_m), all.places_m[index].end());
+      EXPECT_NE(std::ranges::find(all.all[index].places_m, one.place_m), all.all[index].places_m.end());
     }
-    for (std::size_t i = 0; i < all.seen.size(); ++i) {
-      EXPECT_EQ(static_cast<int>(num_returns[i]), all.seen[i].num_returns);
-      EXPECT_EQ(all.places_m[i].size(), num_returns[i]);
+    for (std::size_t i = 0; i < all.all.size(); ++i) {
+      EXPECT_EQ(static_cast<int>(num_returns[i]), all.all[i].seen.num_returns);
+      EXPECT_EQ(all.all[i].places_m.size(), num_returns[i]);
     }
   }
 }
@@ -231,8 +231,8 @@ TEST(Sightings, LandIsWhatMostScansCallSo) {
       const bool says_land = scan % 4 < num_land;
       last = lookout.Ask(lookout.Next([says_land](int thing, const Eigen::Vector2d&) { return Called{thing, says_land && thing != 3, thing}; }));
     }
-    EXPECT_EQ(last.seen[static_cast<std::size_t>(last.of_piece.at(kBow - 1))].is_land, num_land == 3);
-    EXPECT_FALSE(last.seen[static_cast<std::size_t>(last.of_piece.at(2))].is_land);
+    EXPECT_EQ(last.all[static_cast<std::size_t>(last.of_piece.at(kBow - 1))].seen.is_land, num_land == 3);
+    EXPECT_FALSE(last.all[static_cast<std::size_t>(last.of_piece.at(2))].seen.is_land);
   }
 }
 
@@ -252,7 +252,7 @@ TEST(Sightings, OfWhatMovesAreRememberedWhereItIsNow) {
       track.middle_m = at_m + Eigen::Vector2d(-1.5, 0.0);
       track.radius_m = 3.7;
       track.body.emplace(track.outline_m, Sides{}, 0.0004 * Eigen::Matrix2d::Identity(), 12.0);
-      num_whole += lookout.Ask(lookout.Next(Cuts(scan % 3 != 2), walls), tracks).seen.size() == 1 ? 1 : 0;
+      num_whole += lookout.Ask(lookout.Next(Cuts(scan % 3 != 2), walls), tracks).all.size() == 1 ? 1 : 0;
     }
     if (has_frame) {
       EXPECT_EQ(num_whole, 0);

@@ -44,9 +44,10 @@ struct Story {
     }
     return labels;
   }
-  // Where it has one name from a scan on; kNoTrack where it has more, or none.
+  // Where it has one name from a scan on, once it has a number; kNoTrack where it has more, or none.
   std::int64_t NameOf(int thing, int from) const {
-    const auto labels = LabelsOf(thing, from);
+    auto labels = LabelsOf(thing, from);
+    labels.erase(labels.begin(), labels.lower_bound(kNoTrack));
     return labels.size() == 1 ? *labels.begin() : kNoTrack;
   }
   Labels Reported() const {

@@ -226,8 +226,20 @@ TEST(Tracks, OfWhatIsGoneEndAndTheirIdsAreNotUsedAgain) {
   EXPECT_TRUE(is_lost);
   EXPECT_EQ(num_left, 0U);
   for (int scan = 0; scan < 20; ++scan) {
-    for (const auto& track : sea.Scan({{{15.0, 0.0}}}).tracks) EXPECT_GT(track.id, id);
+    for (const auto& track : sea.Scan({{{15.0, 0.0}}}).tracks) EXPECT_TRUE(track.id == id + 1 || track.status == TrackStatus::kTentative);
   }
+}
+
+TEST(Tracks, AreNumberedFromOneUpWhenTheyAreConfirmed) {
+  Sea sea;
+  std::vector<std::int64_t> ids;
+  for (int scan = 0; scan < 20; ++scan) {
+    for (const auto& track : sea.Scan({{{15.0, 0.0}}, {{0.0, 15.0}}}).tracks) {
+      EXPECT_EQ(track.status == TrackStatus::kTentative, track.id < kNoTrack);
+      if (track.status == TrackStatus::kConfirmed && std::ranges::find(ids, track.id) == ids.end()) ids.push_back(track.id);
+    }
+  }
+  EXPECT_EQ(ids, (std::vector<std::int64_t>{1, 2}));
 }
 
 TEST(Tracks, DoNotOutliveAJumpOfThePosition) {
@@ -237,7 +249,7 @@ TEST(Tracks, DoNotOutliveAJumpOfThePosition) {
   const Eigen::Vector2d jump_m(10'000.0, 0.0);
   for (int scan = 0; scan < 20; ++scan) {
     for (const auto& track : sea.Scan({{jump_m + Eigen::Vector2d(15.0, 0.0)}}, jump_m).tracks) {
-      EXPECT_GT(track.id, id);
+      EXPECT_TRUE(track.id > id || track.status == TrackStatus::kTentative);
       EXPECT_TRUE(track.velocity_mps.isZero(0.0));
     }
   }

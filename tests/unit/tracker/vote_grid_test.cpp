@@ -27,13 +27,23 @@ struct Return {
   std::int32_t frame = 0;
 };
 
+std::vector<std::int32_t> SegmentsOf(const std::vector<Return>& returns) {
+  std::vector<std::int32_t> segments;
+  for (const auto& one : returns) {
+    segments.resize(std::max(segments.size(), static_cast<std::size_t>(one.piece) + 1), 0);
+    segments[static_cast<std::size_t>(one.piece)] = one.segment;
+  }
+  return segments;
+}
+
 void AddTo(VoteGrid& grid, const std::vector<Return>& returns) {
-  for (const auto& one : returns) grid.Add(one.frame, kCellM * Eigen::Vector2d(one.x + 0.5, one.y + 0.5), one.piece, one.segment);
+  for (const auto& one : returns) grid.Add(one.frame, kCellM * Eigen::Vector2d(one.x + 0.5, one.y + 0.5), one.piece);
 }
 
 void Scan(VoteGrid& grid, const std::vector<Return>& returns, VoteGrid::Weight weight = VoteGrid::Weight::kOne,
           std::span<const std::int64_t> frames = kEarth) {
-  grid.Begin(frames, kMemoryScans);
+  const auto segments = SegmentsOf(returns);
+  grid.Begin(frames, segments, kMemoryScans);
   AddTo(grid, returns);
   grid.Vote(kFade, weight);
 }
@@ -81,8 +91,9 @@ TEST(VoteGrid, HoldsNothingOfNothing) {
 
 TEST(VoteGrid, CellsAreHalfOpenAlsoBelowZero) {
   VoteGrid grid(kCellM, VoteGrid::Content::kAll);
-  grid.Begin(kEarth, kMemoryScans);
-  for (const double place_m : {-0.5, -0.01, 0.0, 0.49, 0.5}) grid.Add(0, {place_m, place_m}, 0, 0);
+  constexpr std::array<std::int32_t, 1> kSegments{0};
+  grid.Begin(kEarth, kSegments, kMemoryScans);
+  for (const double place_m : {-0.5, -0.01, 0.0, 0.49, 0.5}) grid.Add(0, {place_m, place_m}, 0);
   grid.Vote(kFade, VoteGrid::Weight::kOne);
   std::vector<std::tuple<int, int, int>> cells;
   for (const auto& cell : grid.held()) cells.emplace_back(cell.x, cell.y, cell.count);
@@ -148,7 +159,8 @@ TEST(VoteGrid, PairsAreThoseWithinReachInTheSameFrame) {
     for (auto& one : returns)
       one = {place(random), place(random), static_cast<std::int32_t>(random() % 4), 0, static_cast<std::int32_t>(random() % 3)};
     const bool votes = round % 2 == 0;
-    grid.Begin(kFrames, kMemoryScans);
+    const auto segments = SegmentsOf(returns);
+    grid.Begin(kFrames, segments, kMemoryScans);
     AddTo(grid, returns);
     if (votes) {
       grid.Vote(kFade, VoteGrid::Weight::kOne);
@@ -235,9 +247,10 @@ TEST(VoteGrid, StaysNearItsBoundAlongAShore) {
   VoteGrid grid(kCellM, VoteGrid::Content::kAll);
   std::size_t most = 0;
   for (std::int32_t scan = 0; scan < 400; ++scan) {
-    grid.Begin(kEarth, kLongMemory);
     std::vector<Return> returns;
     for (std::int32_t i = 0; i < kCellsPerScan; ++i) returns.push_back({7 * scan, 7 * i, 0, 0});
+    const auto segments = SegmentsOf(returns);
+    grid.Begin(kEarth, segments, kLongMemory);
     AddTo(grid, returns);
     grid.Vote(kFade, VoteGrid::Weight::kOne);
     most = std::max(most, grid.num_cells());
