@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace lookout::tracker::votes {
@@ -98,6 +99,15 @@ TEST(VoteGrid, CellsAreHalfOpenAlsoBelowZero) {
   std::vector<std::tuple<int, int, int>> cells;
   for (const auto& cell : grid.held()) cells.emplace_back(cell.x, cell.y, cell.count);
   EXPECT_EQ(cells, (std::vector<std::tuple<int, int, int>>{{-1, -1, 2}, {0, 0, 2}, {1, 1, 1}}));
+}
+
+TEST(VoteGrid, WhatIsTooFarFromTheFirstReturnOfItsFrameCountsAsSoFar) {
+  constexpr std::int32_t kFarthest = 32'767;
+  VoteGrid grid(kCellM, VoteGrid::Content::kAll);
+  Scan(grid, {{100, -7, 0, 0}, {100 + kFarthest, -7, 0, 0}, {500'000, -500'000, 0, 0}, {-500'000, 0, 0, 0}});
+  std::vector<std::pair<int, int>> cells;
+  for (const auto& cell : grid.held()) cells.emplace_back(cell.x, cell.y);
+  EXPECT_EQ(cells, (std::vector<std::pair<int, int>>{{100 - kFarthest, 0}, {100, -7}, {100 + kFarthest, -7 - kFarthest}, {100 + kFarthest, -7}}));
 }
 
 TEST(VoteGrid, VotesAreTheMeanOfTheScansThatSawBoth) {
