@@ -83,6 +83,18 @@ TEST(Ledger, WhatIsAlwaysCutStaysTwo) {
   for (int scan = 0; scan < 300; ++scan) EXPECT_EQ(Divide(ledger, Boat(true)).of_piece, kTwo) << "scan " << scan;
 }
 
+// Between a bow and a stern nothing is seen, and the cells of half a metre are too far apart.
+TEST(Ledger, PiecesFourMetresApartAreAsMostScansSay) {
+  for (const bool is_mostly_cut : {false, true}) {
+    Ledger ledger;
+    for (int scan = 0; scan < 100; ++scan) {
+      const bool is_cut = is_mostly_cut == (scan % 5 != 4);
+      const auto groups = Divide(ledger, {{Line({0.1, 0.1}, {3.1, 0.1}), 1}, {Line({7.1, 0.1}, {10.1, 0.1}), is_cut ? 2 : 1}});
+      EXPECT_EQ(groups.of_piece, is_mostly_cut ? kTwo : kOne) << "scan " << scan;
+    }
+  }
+}
+
 // It learns what has changed: a boat comes alongside another, or leaves it.
 TEST(Ledger, FollowsADecisionThatHasChangedForGood) {
   Ledger ledger;

@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace lookout::tracker::votes {
@@ -100,6 +101,15 @@ TEST(VoteGrid, CellsAreHalfOpenAlsoBelowZero) {
   EXPECT_EQ(cells, (std::vector<std::tuple<int, int, int>>{{-1, -1, 2}, {0, 0, 2}, {1, 1, 1}}));
 }
 
+TEST(VoteGrid, WhatIsTooFarFromTheFirstReturnOfItsFrameCountsAsSoFar) {
+  constexpr std::int32_t kFarthest = 32'767;
+  VoteGrid grid(kCellM, VoteGrid::Content::kAll);
+  Scan(grid, {{100, -7, 0, 0}, {100 + kFarthest, -7, 0, 0}, {500'000, -500'000, 0, 0}, {-500'000, 0, 0, 0}});
+  std::vector<std::pair<int, int>> cells;
+  for (const auto& cell : grid.held()) cells.emplace_back(cell.x, cell.y);
+  EXPECT_EQ(cells, (std::vector<std::pair<int, int>>{{100 - kFarthest, 0}, {100, -7}, {100 + kFarthest, -7 - kFarthest}, {100 + kFarthest, -7}}));
+}
+
 TEST(VoteGrid, VotesAreTheMeanOfTheScansThatSawBoth) {
   VoteGrid grid(kCellM, VoteGrid::Content::kAll);
   Scan(grid, kOneThing);
@@ -151,10 +161,10 @@ TEST(VoteGrid, VotesByReturnsCountMoreWithMoreOfThem) {
 
 TEST(VoteGrid, PairsAreThoseWithinReachInTheSameFrame) {
   std::mt19937 random(1);
-  std::uniform_int_distribution<std::int32_t> place(-9, 9);
   VoteGrid grid(kCellM, VoteGrid::Content::kAll);
   constexpr std::array<std::int64_t, 3> kFrames{0, 4, 2};
   for (int round = 0; round < 100; ++round) {
+    std::uniform_int_distribution<std::int32_t> place(-round % 10, round % 10);
     std::vector<Return> returns(1 + random() % 120);
     for (auto& one : returns)
       one = {place(random), place(random), static_cast<std::int32_t>(random() % 4), 0, static_cast<std::int32_t>(random() % 3)};
