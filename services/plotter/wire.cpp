@@ -98,9 +98,10 @@ std::variant<TracksPart, Fault> ToTracksPart(const tracks_t& message) {
   if (!messages::IsWellFormed(message) || message.num_parts > messages::kMaxParts) return kTracksParts;
   TracksPart part{*time, *begin, {}};
   const Datum datum{message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
-  std::int64_t last_id = 0;
+  // Tentative ones come first, with ids of -2 and below; 0 and -1 are none.
+  std::int64_t last_id = std::numeric_limits<std::int64_t>::min();
   for (const auto& track : message.tracks) {
-    if (track.id <= last_id) return kTracksId;
+    if (track.id <= last_id || track.id == tracks_t::PIECE_LAND || track.id == tracks_t::PIECE_NO_TRACK) return kTracksId;
     last_id = track.id;
     if (track.status < track_t::STATUS_TENTATIVE || track.status > track_t::STATUS_LOST) return kTracksCode;
     if (!AreNumbersGood(track)) return kTracksNumber;

@@ -22,7 +22,7 @@ inline constexpr Fault kTracksTime = "tracks_refused_time";      // does not exi
 inline constexpr Fault kTracksParts = "tracks_refused_parts";    // part_index or num_parts (above 1000)
 inline constexpr Fault kTracksNumber = "tracks_refused_number";  // no place on the earth, not finite, or no speed, length or probability that can be
 inline constexpr Fault kTracksCode = "tracks_refused_code";      // a status that does not exist
-inline constexpr Fault kTracksId = "tracks_refused_id";          // ids that do not increase from 1 on
+inline constexpr Fault kTracksId = "tracks_refused_id";          // ids that do not increase, 0 or -1
 inline constexpr std::array kTracksFaults{kTracksTime, kTracksParts, kTracksNumber, kTracksCode, kTracksId};
 
 inline constexpr Fault kAlertsTime = "alerts_refused_time";  // of it or of an alert: does not exist

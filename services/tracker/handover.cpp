@@ -35,7 +35,7 @@ std::optional<Legacy> ToLegacy(const alerts_t& alerts, const tracks_t& tracks) {
   legacy.datum = {tracks.datum_latitude_deg, tracks.datum_longitude_deg, tracks.datum_ellipsoid_height_m};
   for (const auto& message : alerts.alerts) {
     // Of no track: it may have been land, or what had no name yet; people are asked again.
-    if (message.state != alert_t::STATE_ACKNOWLEDGED || message.track_id == 0) continue;
+    if (message.state != alert_t::STATE_ACKNOWLEDGED || message.track_id <= 0) continue;
     Alert& alert = legacy.alerts.emplace_back();
     alert.id = message.id;
     alert.cause = static_cast<AlertCause>(message.cause);

@@ -369,7 +369,8 @@ alert_t ToMessage(const Alert& alert, std::optional<TrackKind> kind) {
   message.cause = static_cast<std::int32_t>(alert.cause);
   message.level = static_cast<std::int32_t>(alert.level);
   message.state = static_cast<std::int32_t>(alert.state);
-  message.track_id = std::max(alert.track_id, std::int64_t{0});
+  const bool is_of_track = alert.track_id != kUnnamed && alert.track_id > kFirstUnseenId;
+  message.track_id = is_of_track ? alert.track_id : kLandTrack;
   message.raised_utime_us = ToUtimeUs(alert.raised);
   message.changed_utime_us = ToUtimeUs(alert.changed);
   message.distance_m = ToFloat(alert.distance_m);

@@ -121,7 +121,7 @@ void Alerts::Update(Entry& entry, const Key& key, Utime time, bool is_whole, con
   alert.cpa_m = danger->cpa_m;
   alert.tcpa_s = danger->cause == AlertCause::kClosestApproach ? danger->tcpa_s : kNan;
   alert.cpa_probability = danger->cause == AlertCause::kClosestApproach ? probability : kNan;
-  if (key.second <= kLandTrack) UpdatePlaces(entry, time, is_whole, *danger);
+  if (IsOfPlaces(key.second)) UpdatePlaces(entry, time, is_whole, *danger);
 }
 
 // Precondition: the alert holds.
@@ -216,7 +216,7 @@ bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
     if (!entry.alert || entry.alert->id != acknowledgement.alert_id || entry.alert->raised != acknowledgement.raised) continue;
     if (entry.alert->state == AlertState::kActive) {
       SetState(*entry.alert, AlertState::kAcknowledged, time);
-      if (key.second <= kLandTrack) TellPlaces(entry, key, acknowledgement);
+      if (IsOfPlaces(key.second)) TellPlaces(entry, key, acknowledgement);
     } else if (entry.alert->state == AlertState::kRectified) {
       SetState(*entry.alert, AlertState::kCleared, time);
     } else {

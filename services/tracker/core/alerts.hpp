@@ -25,6 +25,10 @@ enum class AlertState : std::int32_t { kActive = 1, kAcknowledged = 2, kRectifie
 // As the track of an alert or a danger: land; and what is in the guard zone and is no track yet, or has no place on the map.
 inline constexpr std::int64_t kLandTrack = 0;
 inline constexpr std::int64_t kUnnamed = -1;
+// Those of -2 and below are tentative tracks; from here down they are parts of the guard zone that nobody looks into.
+inline constexpr std::int64_t kFirstUnseenId = -1'000'000;
+// What many things share.
+constexpr bool IsOfPlaces(std::int64_t track_id) { return track_id == kLandTrack || track_id == kUnnamed || track_id <= kFirstUnseenId; }
 
 struct Alert {
   std::int64_t id = 0;

@@ -413,8 +413,11 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   }
   Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
   other.MoveAs(*this, jump_mps);
+  // What is fixed to the thing stays where it is.
+  const Eigen::Isometry2d frame = Frame();
   other.first_m_ = first_m_;
-  other.centered_m_ = other.position_m() - Frame().translation();
+  other.frame_turned_ = frame.linear();
+  other.centered_m_ = frame.linear().transpose() * (other.position_m() - frame.translation());
   *this = other;
 }
 

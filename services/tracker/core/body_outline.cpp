@@ -37,7 +37,7 @@ void Body::Center() {
   for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m -= directions[i].dot(middle);
   standing_ += middle;
   moving_.head<2>() += middle;
-  centered_m_ += turned_.transpose() * middle;
+  centered_m_ += (turned_ * frame_turned_).transpose() * middle;
   for (auto& measured : last_measured_) measured += middle;
 }
 
@@ -108,8 +108,8 @@ std::vector<Eigen::Vector2d> Body::Outline() const {
 
 Eigen::Isometry2d Body::Frame() const {
   Eigen::Isometry2d frame = Eigen::Isometry2d::Identity();
-  frame.linear() = turned_;
-  frame.translation() = position_m() - turned_ * centered_m_;
+  frame.linear() = turned_ * frame_turned_;
+  frame.translation() = position_m() - frame.linear() * centered_m_;
   return frame;
 }
 

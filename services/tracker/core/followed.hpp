@@ -68,6 +68,7 @@ struct Followed {
   bool is_ended = false;
   bool is_proven = false;  // it left a place where land had been thought: no land
   bool is_seen_now = false;
+  std::size_t sighting = 0;  // by which it is
   bool is_inside_now = false;
   std::int64_t inside_of = 0;               // the track that was seen by the segment in which this one lies; 0: land
   bool is_met = false;                      // beams ended in it, in this scan

@@ -133,13 +133,14 @@ void Ledger::AddEvidence(const VoteGrid& grid, double reach_m, double weight) {
     const auto others = grid.EntriesOf(other);
     if (ones.size() == 1 && others.size() == 1 && ones[0].piece == others[0].piece) continue;
     // Of two cells the evidence is mean x sqrt(n1 n2), shared out by the returns of each piece.
-    const float evidence = pair.mean * nearness.at(IndexOf(pair.distance2)) / std::sqrt(static_cast<float>(one.count * other.count));
+    const float evidence =
+        pair.mean * nearness.at(IndexOf(pair.distance2)) / std::sqrt(static_cast<float>(one.count) * static_cast<float>(other.count));
     for (const auto& a : ones) {
       for (const auto& b : others) {
         if (a.piece == b.piece || (pair.one == pair.other && a.piece > b.piece)) continue;
         auto met = sums_.Of(a.piece, b.piece);
         if (met.is_first && IsLand(a.piece) && IsLand(b.piece)) met.evidence += kLandEvidence;
-        met.evidence += evidence * static_cast<float>(a.count * b.count);
+        met.evidence += evidence * static_cast<float>(a.count) * static_cast<float>(b.count);
       }
     }
   }
@@ -156,7 +157,7 @@ void Ledger::AddEvidenceAcross(std::span<const Piece> pieces) {
     const auto& one = across_.held()[IndexOf(pair.one)];
     const auto& other = across_.held()[IndexOf(pair.other)];
     const double near = Exp(-across_.cell_m() * std::sqrt(static_cast<double>(pair.distance2)) / kFineReachM);
-    const double evidence = near / std::sqrt(static_cast<double>(one.count * other.count));
+    const double evidence = near / std::sqrt(static_cast<double>(one.count) * other.count);
     for (const auto& a : across_.EntriesOf(one)) {
       for (const auto& b : across_.EntriesOf(other)) {
         const auto& first = pieces[IndexOf(a.piece)];

@@ -94,8 +94,10 @@ Sight::Span Sight::ColumnsOf(std::span<const Eigen::Vector2d> outline_m) const {
   }
   const std::array<Eigen::Vector2d, 1> point{lidar_m};
   least_m = GapOf(outline_m, point).distance_m;
-  const int first = ColumnAt(middle_rad + from_rad);
-  const int end = ColumnAt(middle_rad + to_rad + 1e-9);
+  // Corners lie on columns, whose azimuths are single precision.
+  constexpr double kOfRoundingRad = 2e-6;
+  const int first = ColumnAt(middle_rad + from_rad - kOfRoundingRad);
+  const int end = ColumnAt(middle_rad + to_rad + kOfRoundingRad);
   int count = end - first;
   if (count < 0) count += num_columns;
   return {first, count, least_m, std::max(most_m, least_m)};

@@ -9,6 +9,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::int32_t kNothing = -1;
+constexpr std::int32_t kMostNumber = 65'535;  // labels have 16 bits: what has a greater one has no returns
 
 struct PieceReturns {
   std::int32_t number = 0;
@@ -19,7 +20,7 @@ struct PieceReturns {
 
 // [numbers] by number, from `list`; kNothing where there is none.
 void SetAt(std::vector<std::int32_t>& list, std::int32_t number, std::int32_t value) {
-  if (number <= 0) return;
+  if (number <= 0 || number > kMostNumber) return;
   const auto at = static_cast<std::size_t>(number - 1);
   if (list.size() <= at) list.resize(at + 1, kNothing);
   list[at] = value;

@@ -68,6 +68,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   Believe(track, i, seen, expected_m);
   sightings_[i].use = Sighting::Use::kTaken;
   track.is_seen_now = true;
+  track.sighting = i;
   track.sum_returns += seen.num_returns;
   track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
   track.seen = track.seen_alone = scan_.end_time;

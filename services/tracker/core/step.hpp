@@ -91,6 +91,7 @@ class Step {
   void ChooseFrame(Followed& track);
   static void Remember(Followed& track, bool is_seen);
   void Miss(Followed& track);
+  std::optional<std::size_t> SightingAround(const Followed& track) const;
   void FindInside();
   bool IsClear(std::size_t i) const;
   bool IsAlone(const Followed& track, std::size_t i) const;

@@ -153,30 +153,41 @@ void Step::AssignRest() {
   });
 }
 
+// What is seen round a track and in it: of a thing rather than of land.
+std::optional<std::size_t> Step::SightingAround(const Followed& track) const {
+  constexpr double kLeastArea = 0.05;
+  constexpr double kShare = 0.5;
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    const auto& sighting = sightings_[i];
+    if (sighting.use == Sighting::Use::kFree || sighting.use == Sighting::Use::kLeftOut) continue;
+    if (found && sighting.seen.is_land) continue;
+    if ((sighting.middle_m - track.middle_m).norm() > sighting.radius_m + track.radius_m) continue;
+    const auto both = Intersection(sighting.seen.outline_m, track.outline_m);
+    if (both.empty() || AreaOf(both) < kShare * std::max(kLeastArea, AreaOf(track.outline_m))) continue;
+    // Some of its returns must lie in the track; where these are not known, beams that end there.
+    const bool is_in = std::ranges::any_of(sighting.places_m, [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); });
+    if (!is_in && !(sighting.heights_m.empty() && track.is_met)) continue;
+    found = i;
+    if (!sighting.seen.is_land) break;
+  }
+  return found;
+}
+
 // Tracks that lie in what another is seen by: a boat that a dock, a bank or another boat was merged with in this scan.
 void Step::FindInside() {
   for (auto& track : known_.tracks) {
     if (track.is_seen_now || !track.body) continue;
-    for (std::size_t i = 0; i < sightings_.size(); ++i) {
-      if (sightings_[i].use == Sighting::Use::kFree || sightings_[i].use == Sighting::Use::kLeftOut) continue;
-      if ((sightings_[i].middle_m - track.middle_m).norm() > sightings_[i].radius_m + track.radius_m) continue;
-      const auto both = Intersection(sightings_[i].seen.outline_m, track.outline_m);
-      const double area = std::max(0.05, AreaOf(track.outline_m));
-      if (both.empty() || AreaOf(both) < 0.5 * area) continue;
-      // Something of what was seen must lie in it.
-      if (!track.is_met &&
-          std::ranges::none_of(sightings_[i].places_m, [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); }))
-        continue;
-      track.is_inside_now = true;
-      track.seen = scan_.end_time;
-      track.inside_of = 0;
-      for (const auto& other : known_.tracks) {
-        if (other.is_seen_now && std::ranges::find(other.segment_ids, sightings_[i].seen.segment_id) != other.segment_ids.end())
-          track.inside_of = other.id;
-      }
-      if (track.inside_of == 0) track.body->Fade(dt_s_);
-      break;
+    const auto in = SightingAround(track);
+    if (!in) continue;
+    track.is_inside_now = true;
+    track.seen = scan_.end_time;
+    track.inside_of = 0;
+    for (const auto& other : known_.tracks) {
+      if (other.is_seen_now && std::ranges::find(other.segment_ids, sightings_[*in].seen.segment_id) != other.segment_ids.end())
+        track.inside_of = other.id;
     }
+    if (track.inside_of == 0) track.body->Fade(dt_s_);
   }
 }
 

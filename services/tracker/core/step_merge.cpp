@@ -138,12 +138,15 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
     return std::clamp(kPerHitS * num_hits, kShortestS, kLongestS);
   }
   if (IsLikePart(larger, lesser, shared_m2)) return kPartS;
+  if (one.is_seen_now && other.is_seen_now && AreTwo(one.sighting, other.sighting)) return kNeverS;
   const bool is_moving_together = IsMoving(one) && IsMoving(other) && SpeedBetween(one, other) < kSameVelocityMps;
   return is_moving_together && GapOf(one.outline_m, other.outline_m).distance_m < kNearM ? kPartS : kNeverS;
 }
 
 // The second becomes one with the first, by the older name.
 void Step::Join(Followed& one, Followed& other) {
+  const std::int64_t one_before = one.PublicId();
+  const std::int64_t other_before = other.PublicId();
   const bool is_part = one.is_seen_now && other.is_seen_now;
   // What is confirmed is not replaced by what is not.
   const bool is_larger = AreaOf(other.outline_m) > AreaOf(one.outline_m);
@@ -165,7 +168,7 @@ void Step::Join(Followed& one, Followed& other) {
   if (one.overtaking == Encounter::kNone) one.overtaking = other.overtaking;
   // The lower number is the older name.
   if (one.number == 0 || (other.number > 0 && other.number < one.number)) std::swap(one.number, other.number);
-  merged_.emplace_back(other.PublicId(), one.PublicId());
+  merged_.emplace_back(one.PublicId() == one_before ? other_before : one_before, one.PublicId());
   if (other.number > 0) {
     Followed::Relate(one.parents, other.number, scan_.end_time);
     Followed::Relate(other.children, one.number, scan_.end_time);

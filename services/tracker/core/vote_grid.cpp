@@ -59,6 +59,10 @@ void VoteGrid::Begin(std::span<const std::int64_t> frame_ids, std::span<const st
     cell = {};
     free_.push_back(static_cast<std::int32_t>(slot));
   }
+  if (slot_of_.size() < 4 * kMostCells) return;
+  slot_of_.clear();
+  cells_.clear();
+  free_.clear();
 }
 
 void VoteGrid::Add(std::int32_t frame, const Eigen::Vector2d& place_m, std::int32_t piece) {
@@ -133,11 +137,13 @@ void VoteGrid::KeepMajority() {
     std::map<std::int32_t, int> count_of;
     for (const auto& entry : EntriesOf(cell)) count_of[entry.segment] += entry.count;
     if (count_of.size() < 2) continue;
-    const auto most = std::ranges::max_element(count_of, {}, [](const auto& one) { return one.second; });
+    int most = 0;
+    for (const auto& [segment, count] : count_of) most = std::max(most, count);
     const auto first = entries_.begin() + cell.first;
-    const auto end = std::stable_partition(first, entries_.begin() + cell.end, [&](const Entry& entry) { return entry.segment == most->first; });
+    const auto end = std::stable_partition(first, entries_.begin() + cell.end, [&](const Entry& entry) { return count_of[entry.segment] == most; });
     cell.end = static_cast<std::int32_t>(end - entries_.begin());
-    cell.count = most->second;
+    cell.count = 0;
+    for (const auto& entry : EntriesOf(cell)) cell.count += entry.count;
   }
 }
 
@@ -146,11 +152,11 @@ float VoteGrid::VoteOf(const Held& one, const Held& other) const {
   const auto ones = EntriesOf(one);
   const auto others = EntriesOf(other);
   if (ones.size() == 1 && others.size() == 1) return ones[0].segment == others[0].segment ? 1.0F : -1.0F;
-  int num_same = 0;
+  double num_same = 0.0;
   for (const auto& a : ones) {
-    for (const auto& b : others) num_same += a.segment == b.segment ? a.count * b.count : 0;
+    for (const auto& b : others) num_same += a.segment == b.segment ? static_cast<double>(a.count) * b.count : 0.0;
   }
-  return 2.0F * static_cast<float>(num_same) / static_cast<float>(one.count * other.count) - 1.0F;
+  return static_cast<float>(2.0 * num_same / (static_cast<double>(one.count) * other.count) - 1.0);
 }
 
 template <typename Take>

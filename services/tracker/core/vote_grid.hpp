@@ -30,13 +30,14 @@ class MeanVote {
 
 /// Square cells of a plane, or of several (frames), with a mean vote for each pair of cells at most kReach cells apart.
 ///
-/// Memory: 400 bytes a cell. What is not seen for a while is forgotten; with more than kMostCells cells, after an eighth of that while.
+/// Memory: 400 bytes a cell. What is not seen for a while is forgotten; with more than kMostCells cells, after an eighth of that while; with more
+/// than four times as many (32 MB), all is.
 class VoteGrid {
  public:
   static constexpr std::int32_t kReach = 5;  // cells
   static constexpr std::size_t kMostCells = 20'000;
 
-  /// What a cell stands for: all that has returns in it, or the segment with most of them.
+  /// What a cell stands for: all that has returns in it, or the segment with most of them (those, where several have as many).
   enum class Content { kAll, kMostOf };
   /// What a vote counts: one, or more with the returns of both cells.
   enum class Weight { kOne, kByReturns };

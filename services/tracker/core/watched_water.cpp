@@ -27,6 +27,7 @@ double CameUpLogOdds(const Watched& watched, double seen_share) { return std::mi
 
 void WatchedWater::Add(const Sight& sight, Utime time) {
   while (!scans_.empty() && ToSeconds(time - scans_.front().time) > kKeptS) scans_.pop_front();
+  if (scans_.size() >= kMostScans) scans_.pop_front();
   const auto* sweep = sight.sweep();
   if (sweep == nullptr) return;
   Scan scan{.time = time, .start = sight.start(), .end = sight.end(), .max_range_m = sight.max_range_m(), .ring = sight.ring(), .unwrapped_rad = {}};

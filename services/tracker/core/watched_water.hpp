@@ -27,6 +27,7 @@ double CameUpLogOdds(const Watched& watched, double seen_share);
 class WatchedWater {
  public:
   static constexpr double kKeptS = 3.0;
+  static constexpr std::size_t kMostScans = 100;
   static constexpr double kWatchedS = 2.0;  // before something came up: long enough to say that there was nothing
 
   /// @param time  of the scan's end; later than all before

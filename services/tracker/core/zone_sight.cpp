@@ -23,7 +23,6 @@ constexpr std::size_t kMostBetween = 1;
 // A column looks half way to the next, so that a scan of few columns leaves no degree out; what is farther apart is a gap.
 constexpr double kMostApartDeg = 1.5;
 // Below that of every track, of land and of what has no name.
-constexpr std::int64_t kFirstTrackId = -1'000'000;
 
 Eigen::Vector2d DirectionOf(double bearing_rad) {
   const auto [sine, cosine] = SinCosOf(bearing_rad);
@@ -362,7 +361,7 @@ std::optional<Danger> ZoneSight::danger() const {
   const auto& largest = wide_.front();
   return Danger{
       .cause = AlertCause::kWatch,
-      .track_id = kFirstTrackId - num_told_,
+      .track_id = kFirstUnseenId - num_told_,
       .probability = 1.0,
       .distance_m = largest.from_m,
       .bearing_rad = largest.bearing.width_rad >= kTwoPi - 1e-9 ? kNan : WrapTo2Pi(largest.bearing.start_rad + largest.bearing.width_rad / 2.0),

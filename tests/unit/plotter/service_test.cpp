@@ -347,6 +347,9 @@ TEST_F(PlotterService, RefusesWhatCannotBe) {
   EXPECT_EQ(refused([&] { message.tracks[0].longitude_deg = 180.001; }, "tracks_refused_number"), 2);
   EXPECT_EQ(refused([&] { message.tracks[0].velocity_map_mps[0] = 1e9; }, "tracks_refused_number"), 3);
   EXPECT_EQ(refused([&] { message.tracks[1].id = 17; }, "tracks_refused_id"), 1);
+  EXPECT_EQ(refused([&] { message.tracks[0].id = 0; }, "tracks_refused_id"), 2);
+  EXPECT_EQ(refused([&] { message.tracks[0].id = -1; }, "tracks_refused_id"), 3);
+  EXPECT_EQ(refused([&] { message.tracks[0].id = -2; }, "tracks_refused_id"), 3);  // a tentative one
   EXPECT_EQ(refused([&] { message.tracks[1].status = 9; }, "tracks_refused_code"), 1);
   EXPECT_EQ(refused([&] { message.end_utime_us = INT64_MAX; }, "tracks_refused_time"), 1);
   EXPECT_EQ(refused([&] { message.num_parts = 2'000; }, "tracks_refused_parts"), 1);

@@ -311,5 +311,24 @@ TEST(Body, CovarianceIsHonest) {
   EXPECT_LT(velocity_sum / num_moving, 1.5);
 }
 
+TEST(Body, FrameKeepsItsTurnWhereTheOutlineIsAnother) {
+  std::mt19937_64 random(8);
+  Box box{{-10.0, 20.0}, 0.0};
+  Body body(box.SeenFrom({0.0, 0.0}), {}, kNoise, 20.0);
+  for (int scan = 0; scan < 60; ++scan) {
+    box.course_rad += DegToRad(10.0) * kScanS;
+    box.middle_m += 3.0 * kScanS * Eigen::Vector2d(std::cos(box.course_rad), std::sin(box.course_rad));
+    body.Predict(kScanS);
+    body.Update(Shaken(box.SeenFrom({0.0, 0.0}), 0.03, random), {}, kNoise, box.middle_m.norm(), true);
+  }
+  const Eigen::Isometry2d before = body.Frame();
+  const double moved_m = body.moved_m();
+  box.length_m = 9.0;
+  body.Restart(box.SeenFrom({0.0, 0.0}), {}, 20.0, false);
+  EXPECT_NEAR(body.moved_m(), moved_m, 1e-9);
+  EXPECT_TRUE(body.Frame().translation().isApprox(before.translation(), 1e-9));
+  EXPECT_TRUE(body.Frame().linear().isApprox(before.linear(), 1e-9)) << body.Frame().linear() << "\n" << before.linear();
+}
+
 }  // namespace
 }  // namespace lookout::tracker

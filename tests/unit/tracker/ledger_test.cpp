@@ -297,5 +297,26 @@ TEST(Ledger, TheOrderOfPiecesChangesNothingButNumbers) {
   }
 }
 
+// Ids of segments and frames are names.
+TEST(Ledger, TheNumbersOfSegmentsChangeNothing) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> place_m(0.0, 10.0);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<Drawn> pieces;
+    for (int i = 0; i < 16; ++i) {
+      const Eigen::Vector2d from_m(place_m(random), place_m(random));
+      pieces.push_back({Line(from_m, from_m + Eigen::Vector2d(1.0, 0.4)), 0, i < 4});
+    }
+    Ledger ledger;
+    Ledger renamed_ledger;
+    for (int scan = 0; scan < 15; ++scan) {
+      const auto drawn = RandomScan(pieces, random);
+      auto renamed = drawn;
+      for (auto& piece : renamed) piece.segment = 1000 - 7 * piece.segment;
+      ASSERT_EQ(Divide(ledger, drawn).of_piece, Divide(renamed_ledger, renamed).of_piece) << "round " << round << ", scan " << scan;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lookout::tracker::decisions

@@ -179,7 +179,7 @@ export class Assembler {
     for (const segment of segments) if (segment.kind === wire.Segment.KIND_LAND && !track_of_segment.has(segment.id)) land_segments.add(segment.id);
     const alert_of_track = new Map<number, wire.Alert>();
     const alerts = this.alerts?.alerts ?? [];
-    for (const alert of alerts) if (alert.track_id > 0 && !alert_of_track.has(alert.track_id)) alert_of_track.set(alert.track_id, alert);
+    for (const alert of alerts) if (alert.track_id !== 0 && !alert_of_track.has(alert.track_id)) alert_of_track.set(alert.track_id, alert);
     const end_utime_us = first?.end_utime_us ?? tracksParts[0]?.end_utime_us ?? this.alerts?.end_utime_us ?? this.poses.at(-1)?.utime_us ?? 0;
     const pose = this.poses.findLast((candidate) => candidate.utime_us <= end_utime_us) ?? this.poses.at(-1) ?? null;
     const motion = motionOf(this.poses, pose);

@@ -37,9 +37,9 @@ class Row {
   private placed_ms = -Infinity;
 
   constructor(private readonly state: State, private alert: wire.Alert) {
-    const show = button("", () => { if (this.alert.track_id > 0) state.choose(this.alert.track_id); }, "words");
+    const show = button("", () => { if (this.alert.track_id !== 0) state.choose(this.alert.track_id); }, "words");
     show.append(this.level, this.text);
-    show.onpointerenter = () => { if (this.alert.track_id > 0) state.mark({ track: this.alert.track_id }); };
+    show.onpointerenter = () => { if (this.alert.track_id !== 0) state.mark({ track: this.alert.track_id }); };
     show.onpointerleave = () => { state.mark({}); };
     this.acknowledge = button(words.acknowledge, () => { void this.send(); }, "acknowledge");
     this.element.append(this.shape.element, show, this.acknowledge, this.sent);
