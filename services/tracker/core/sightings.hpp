@@ -32,7 +32,7 @@ struct Sightings {
   std::vector<Sighting> all;
   std::int32_t num_groups = 0;  // of the ledger: the first ones of all, in its order
   // What pieces (by number less one) and segments (by id less one) are in: an index of all; of a segment in several that with most of its returns;
-  // -1: there is no such piece or segment.
+  // -1: there is no such piece or segment, or it shows in second returns alone.
   std::vector<std::int32_t> of_piece;
   std::vector<std::int32_t> of_segment;
 };
