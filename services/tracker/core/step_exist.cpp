@@ -125,11 +125,11 @@ bool Step::IsAlone(const Followed& track, std::size_t i) const {
 // the thing.
 void Step::AskWatched(Followed& track) const {
   constexpr double kHigherM = 0.05;
-  constexpr double kBesideM = 2.0;
+  constexpr double kBesideLostM = 2.0;
   if (!is_sight_known_ || (track.watched && track.top_m < track.watched_top_m + kHigherM)) return;
   const bool is_beside = std::ranges::any_of(known_.tracks, [&](const Followed& other) {
     return other.is_confirmed && !other.is_ended && !other.is_seen_now &&
-           (other.middle_m - track.first_m).norm() < kBesideM + other.radius_m + track.first_radius_m;
+           (other.middle_m - track.first_m).norm() < kBesideLostM + other.radius_m + track.first_radius_m;
   });
   track.watched = is_beside ? Watched{} : known_.watched.At(track.first_m, track.top_m, track.first);
   track.watched_top_m = track.top_m;

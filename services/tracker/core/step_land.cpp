@@ -94,15 +94,15 @@ bool Step::IsLand(const Followed& track) const {
 // What stands beside land may be cut off it by chance, until the ledger has seen both for a while.
 bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
   constexpr int kSeenFor = 10;  // scans
-  constexpr double kBesideM = 2.0;
+  constexpr double kBesideShoreM = 2.0;
   if (track.num_hits >= kSeenFor) return false;
   for (std::size_t k = 0; k < sightings_.size(); ++k) {
     if (!sightings_[k].seen.is_land ||
-        (sightings_[k].middle_m - sightings_[i].middle_m).norm() > sightings_[k].radius_m + sightings_[i].radius_m + kBesideM)
+        (sightings_[k].middle_m - sightings_[i].middle_m).norm() > sightings_[k].radius_m + sightings_[i].radius_m + kBesideShoreM)
       continue;
     // Not the hull of a bay: its shore.
     if (std::ranges::any_of(sightings_[k].places_m, [&](const Eigen::Vector2d& place_m) {
-          return (place_m - sightings_[i].middle_m).norm() < sightings_[i].radius_m + kBesideM;
+          return (place_m - sightings_[i].middle_m).norm() < sightings_[i].radius_m + kBesideShoreM;
         }))
       return true;
   }

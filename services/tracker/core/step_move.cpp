@@ -55,12 +55,12 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
 
 // What moves is remembered in a frame of its own, until it has stood for a while.
 void Step::ChooseFrame(Followed& track) {
-  constexpr double kStandsForS = 2.0;
+  constexpr double kStandsInFrameS = 2.0;
   constexpr double kMovedM = 1.5;
   if (!track.body || !track.is_confirmed) return;
   if (!track.body->IsMoving(kMovesProbability)) {
     track.stood_s += dt_s_;
-    if (track.stood_s > kStandsForS) track.frame = 0;
+    if (track.stood_s > kStandsInFrameS) track.frame = 0;
     return;
   }
   track.stood_s = 0.0;

@@ -15,6 +15,12 @@ constexpr unsigned kBits = 16;
 constexpr std::uint64_t kMask = 0xFFFF;
 constexpr std::int32_t kMostCellsOff = 32'767;
 
+// From -kReach on.
+constexpr std::size_t RowOf(std::int32_t dy) {
+  const std::int32_t row = dy + VoteGrid::kReach;
+  return static_cast<std::size_t>(row);
+}
+
 // The number of an offset of the half disc: (0, 0), and what comes after it by x, then y.
 struct OffsetTable {
   std::array<std::array<std::uint8_t, static_cast<std::size_t>(2) * VoteGrid::kReach + 1>, VoteGrid::kReach + 1> number{};
@@ -24,8 +30,7 @@ struct OffsetTable {
     for (int dx = 0; dx <= VoteGrid::kReach; ++dx) {
       for (int dy = -VoteGrid::kReach; dy <= VoteGrid::kReach; ++dy) {
         const bool is_in = (dx > 0 || dy >= 0) && dx * dx + dy * dy <= VoteGrid::kReach * VoteGrid::kReach;
-        number.at(static_cast<std::size_t>(dx)).at(static_cast<std::size_t>(dy + VoteGrid::kReach)) =
-            is_in ? static_cast<std::uint8_t>(count++) : static_cast<std::uint8_t>(kNoOffset);
+        number.at(static_cast<std::size_t>(dx)).at(RowOf(dy)) = is_in ? static_cast<std::uint8_t>(count++) : static_cast<std::uint8_t>(kNoOffset);
       }
     }
   }
@@ -175,7 +180,7 @@ void VoteGrid::ForPairs(const Take& take) {
         const Held& other = held_[j];
         if (other.frame != one.frame || other.x != one.x + dx || other.y > one.y + kReach) break;
         const int dy = other.y - one.y;
-        const std::size_t offset = kOffsetTable.number.at(static_cast<std::size_t>(dx)).at(static_cast<std::size_t>(dy + kReach));
+        const std::size_t offset = kOffsetTable.number.at(static_cast<std::size_t>(dx)).at(RowOf(dy));
         if (offset != kNoOffset)
           pairs_.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), dx * dx + dy * dy, take(one, other, offset)});
       }
