@@ -14,10 +14,13 @@ namespace lookout::tracker {
 namespace {
 
 // Chosen on families of scenes; all of them are flat (DECISIONS.md).
-constexpr float kFade = 0.98F;          // of a vote, from scan to scan
-constexpr double kFineReachM = 0.8;     // over which evidence falls to 1/e
-constexpr double kCoarseReachM = 3.0;   // the same, of cells of 2 m
-constexpr double kCoarseWeight = 0.3;   // as cells of 0.5 m count 1
+constexpr float kFade = 0.98F;         // of a vote, from scan to scan
+constexpr double kFineReachM = 0.8;    // over which evidence falls to 1/e
+constexpr double kCoarseReachM = 3.0;  // the same, of cells of 2 m
+constexpr double kCoarseWeight = 0.3;  // as cells of 0.5 m count 1
+// Of so many, as in rain, only those with some returns count in coarse cells, where each has hundreds of neighbours.
+constexpr std::size_t kManyPieces = 1000;
+constexpr std::size_t kReturnsOfMany = 3;
 constexpr double kLandVote = 0.3;       // above it a piece is land
 constexpr float kLandEvidence = 2.0F;   // that two pieces of land beside each other are one
 constexpr std::int32_t kOldScans = 10;  // seen there for so long, it is no part of what moves past it
@@ -91,10 +94,11 @@ void Ledger::TakeNote(std::span<const Piece> pieces, std::span<const Frame> fram
   coarse_.Begin(ids, segments_, kMemoryScans);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const auto frame = pieces[i].frame;
+    const bool is_coarse = pieces.size() <= kManyPieces || pieces[i].places_m.size() >= kReturnsOfMany;
     for (const auto& place_m : pieces[i].places_m) {
       const Eigen::Vector2d here_m = frames[IndexOf(frame)].T_frame_map * place_m;
       fine_.Add(frame, here_m, static_cast<std::int32_t>(i));
-      coarse_.Add(frame, here_m, static_cast<std::int32_t>(i));
+      if (is_coarse) coarse_.Add(frame, here_m, static_cast<std::int32_t>(i));
     }
   }
   fine_.Vote(kFade, VoteGrid::Weight::kOne);
