@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPieceBesideM = 0.3;  // beyond the outline of the thing that it is a piece of
 constexpr double kMostCost = 6.0;
+constexpr double kYoungCost = 2.0;
 constexpr double kLongestScanS = 0.2;
 
 }  // namespace
@@ -33,7 +34,8 @@ double Step::CostOf(const Followed& track, std::size_t i) {
   const auto both = Intersection(track.outline_m, seen.outline_m);
   const double overlap = both.empty() ? 0.0 : std::min(1.0, std::max(AreaOf(both), 0.1) / std::min(area_track, area_seen));
   const auto shift = track.body->ShiftOf(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, sightings_[i].range_m);
-  return 0.1 * std::min(shift.off, 30.0) + 0.1 * std::min(shift.misfit, 20.0) + (1.0 - overlap) + 0.1 * std::abs(Log(area_seen / area_track));
+  const double young = track.is_confirmed ? 0.0 : kYoungCost;  // what is known comes before what came up in it
+  return 0.1 * std::min(shift.off, 30.0) + 0.1 * std::min(shift.misfit, 20.0) + (1.0 - overlap) + 0.1 * std::abs(Log(area_seen / area_track)) + young;
 }
 
 // Computed once for a segment, where it is asked for.
