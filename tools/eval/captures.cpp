@@ -191,7 +191,7 @@ std::map<std::int32_t, ScanObject> ReadObjectsOfCapture(const CaptureWithTruth& 
   return objects;
 }
 
-std::vector<CaptureWithTruth> ListCaptures(const fs::path& folder) {
+std::vector<CaptureWithTruth> ListCaptures(const fs::path& folder, CaptureTruth truth) {
   static const std::regex kName(R"((.+)-(\d+)\.pcap\.xz)");
   std::error_code fault;
   std::vector<CaptureWithTruth> captures;
@@ -209,7 +209,8 @@ std::vector<CaptureWithTruth> ListCaptures(const fs::path& folder) {
     files.capture = entry.path();
     files.truth = Beside(files.capture, ".truth.csv.xz");
     files.objects = Beside(files.capture, ".objects.csv.xz");
-    for (const auto& file : {files.truth, files.objects}) {
+    for (const auto& file : {files.objects, files.truth}) {
+      if (truth == CaptureTruth::kOfObjects && file == files.truth) continue;
       if (!fs::exists(file)) throw std::runtime_error(file.string() + ": is missing beside " + name);
     }
     captures.push_back(std::move(files));

@@ -25,9 +25,12 @@ struct CaptureWithTruth {
   std::filesystem::path objects;
 };
 
+/// What stands beside a capture: the object of each return, or its objects alone.
+enum class CaptureTruth { kOfReturns, kOfObjects };
+
 /// @return the captures of a folder, by name and then by seed
 /// @throws std::runtime_error when the folder cannot be read, a name does not end in -SEED, or a capture stands without its truth
-std::vector<CaptureWithTruth> ListCaptures(const std::filesystem::path& folder);
+std::vector<CaptureWithTruth> ListCaptures(const std::filesystem::path& folder, CaptureTruth truth = CaptureTruth::kOfReturns);
 
 /// The boat of the captures: facts from the boat.txtpb beside them, all else (segmenter, decoder) from a config folder. Where there is no
 /// boat.txtpb beside them, the facts are those of the config folder, too.

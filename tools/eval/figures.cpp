@@ -24,7 +24,7 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 21> kFigureNames{"main",
+constexpr std::array<std::string_view, 27> kFigureNames{"main",
                                                         "times",
                                                         "miou",
                                                         "false",
@@ -44,7 +44,13 @@ constexpr std::array<std::string_view, 21> kFigureNames{"main",
                                                         "autoferry",
                                                         "autoferry_targets",
                                                         "tracks_targets",
-                                                        "tracks_approaches"};
+                                                        "tracks_approaches",
+                                                        "alerts_targets",
+                                                        "alerts_verdicts",
+                                                        "alerts_levels",
+                                                        "alerts_dangers",
+                                                        "alerts_standing",
+                                                        "alerts_left_out"};
 
 // In headings of columns a world stands before what it is a world of.
 std::string HeadingOf(const Results& world, const std::string& text) { return world.world.empty() ? text : world.world + ": " + text; }

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
 #include "common/runtime/version.hpp"
+#include "tools/eval/alert_command.hpp"
 #include "tools/eval/comparison_command.hpp"
 #include "tools/eval/log_command.hpp"
 #include "tools/eval/track_autoferry.hpp"
@@ -23,12 +25,17 @@ using namespace lookout;
 
 constexpr int kExitUsage = 2;
 constexpr double kSecondsOfTracks = 20.0;  // of each scene and seed
+constexpr double kSecondsOfAlerts = 60.0;
 
 struct Options {
   eval::LogOptions log;
   eval::ComparisonOptions comparison;
   std::string autoferry_folder;  // empty = none
   bool has_tracks = false;       // trackers on runs, in place of methods on scans
+  bool has_alerts = false;       // alerts on runs, in place of methods on scans
+  std::vector<std::filesystem::path> captures;
+  std::filesystem::path list_file;
+  std::size_t num_jobs = 1;
 };
 
 // Exits here for --help, --version and wrong lines.
@@ -66,8 +73,9 @@ Options ParseOptions(int argc, char** argv) {
   weights->needs(left_out);
   needs_config(app.add_option("--points", comparison.points, "scans out of files: .pcd, or .bin (KITTI) with a .label beside it"))
       ->check(CLI::ExistingFile);
-  needs_config(app.add_option("--captures", comparison.captures,
-                              "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb"));
+  needs_config(
+      app.add_option("--captures", options.captures,
+                     "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb (with --alerts several)"));
   auto* autoferry = app.add_option("--autoferry", options.autoferry_folder,
                                    "trackers on the Autoferry data set: folder of its files (--config: of the boat's tracker)")
                         ->check(CLI::ExistingDirectory);
@@ -75,7 +83,7 @@ Options ParseOptions(int argc, char** argv) {
   needs_config(app.add_option("--first-seed", comparison.first_seed,
                               "the others follow it (default: 101 for methods and tests, 1 for --sweep and --tuning; the other range is refused)"));
   needs_config(app.add_flag("--tuning", comparison.is_tuning, "methods on seeds of tuning; no file is written"));
-  auto* seconds = needs_config(app.add_option("--seconds", comparison.seconds, "of each scene and seed (with --tracks 20)"));
+  auto* seconds = needs_config(app.add_option("--seconds", comparison.seconds, "of each scene and seed (with --tracks 20, with --alerts 60)"));
   seconds->check(CLI::Range(0.3, 3600.0))->capture_default_str();
   needs_config(app.add_option("--methods", comparison.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
       ->delimiter(',');
@@ -96,27 +104,40 @@ Options ParseOptions(int argc, char** argv) {
       ->excludes(in);
   needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));
   auto* tracks = needs_config(app.add_flag("--tracks", options.has_tracks, "trackers on runs of all services, in place of methods on scans"));
+  auto* alerts = needs_config(app.add_flag("--alerts", options.has_alerts, "alerts on runs of all services, in place of methods on scans"));
+  app.add_option("--list", options.list_file, "with --alerts: write each alert and each danger, as a row of a CSV file")->needs(alerts);
+  app.add_option("--jobs", options.num_jobs, "with --alerts: runs at once; the figures are the same")
+      ->check(CLI::Range(1, 256))
+      ->needs(alerts)
+      ->capture_default_str();
+  for (const char* other : {"--lost", "--tracks"}) alerts->excludes(app.get_option(other));
   for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--pictures"}) {
     tracks->excludes(app.get_option(other));
+    alerts->excludes(app.get_option(other));
     autoferry->excludes(app.get_option(other));
   }
-  for (const char* other : {"--in", "--scenes", "--captures", "--tracks", "--csv", "--lost"}) autoferry->excludes(app.get_option(other));
+  for (const char* other : {"--in", "--scenes", "--captures", "--tracks", "--alerts", "--csv", "--lost"}) autoferry->excludes(app.get_option(other));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
     if (log.log_file.empty() && comparison.config_folder.empty() && options.autoferry_folder.empty())
       throw CLI::RequiredError("one of --in LOG, --config DIR, --autoferry DIR");
-    if (!comparison.config_folder.empty()) {
+    if (!options.has_alerts) {
+      if (options.captures.size() > 1) throw CLI::ValidationError("--captures", "several folders are for --alerts alone");
+      if (!options.captures.empty()) comparison.captures = options.captures.front();
+    }
+    if (!comparison.config_folder.empty() && !(options.has_alerts && !options.captures.empty())) {
       const bool has_scans = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
       if (!has_scans && comparison.tests.empty() && options.autoferry_folder.empty())
         throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test, --autoferry");
       if (comparison.scenes.empty() && !comparison.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
       if (!has_scans && !comparison.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
-      if (options.has_tracks && seconds->count() == 0) comparison.seconds = kSecondsOfTracks;
       if (comparison.methods.empty() &&
           ((comparison.sweeps.empty() && comparison.tests.empty()) || !comparison.points.empty() || !comparison.captures.empty()))
         comparison.methods = {"all"};
     }
+    if (options.has_tracks && seconds->count() == 0) comparison.seconds = kSecondsOfTracks;
+    if (options.has_alerts && seconds->count() == 0) comparison.seconds = kSecondsOfAlerts;
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
   }
@@ -129,6 +150,13 @@ int EvaluateTracks(const eval::ComparisonOptions& options) {
                                options.lost_file, options.is_forced, options.block_files});
 }
 
+int EvaluateAlerts(const Options& options) {
+  const auto& comparison = options.comparison;
+  const auto use = comparison.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
+  return eval::EvaluateAlerts({comparison.config_folder, eval::PlanOf(comparison, use), comparison.is_tuning, options.captures, options.num_jobs,
+                               comparison.csv_folder, options.list_file, comparison.is_forced, comparison.block_files});
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -137,6 +165,7 @@ int main(int argc, char** argv) try {
   if (!options.autoferry_folder.empty()) {
     return eval::EvaluateAutoferry({options.autoferry_folder, options.comparison.config_folder, options.comparison.block_files});
   }
+  if (options.has_alerts) return EvaluateAlerts(options);
   return options.has_tracks ? EvaluateTracks(options.comparison) : eval::CompareMethods(options.comparison);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';

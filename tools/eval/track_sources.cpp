@@ -46,15 +46,6 @@ Polygon OutlineAt(const Eigen::Vector2d& position_m, double heading_rad, const P
   return placed_m;
 }
 
-// As lookout-tracker has it: the hull in the middle of the box of own returns, no larger than it; the whole box where the size of the hull is not
-// set.
-Polygon HullOf(const config::BoatFacts& boat) {
-  const auto center_m = boat.own_vessel_box_m.center();
-  Eigen::Vector2d half_m = boat.own_vessel_box_m.sizes().head<2>() / 2.0;
-  if (boat.hull_m) half_m = half_m.cwiseMin(Eigen::Vector2d(boat.hull_m->length_m, boat.hull_m->beam_m) / 2.0);
-  return sim::Rectangle(center_m.x() - half_m.x(), center_m.x() + half_m.x(), center_m.y() - half_m.y(), center_m.y() + half_m.y());
-}
-
 // From one period before the run to one behind it, so that velocities have both sides.
 void AddOutlines(const sim::Scene& scene, const config::BoatFacts& boat, double seconds, Truth& truth) {
   const auto map = sim::MapFrame(boat);
@@ -71,7 +62,7 @@ void AddOutlines(const sim::Scene& scene, const config::BoatFacts& boat, double 
     const double time_s = 1e-6 * static_cast<double>(i * kOutlinePeriodUs);
     const std::int64_t utime_us = ToUtimeUs(kStart) + i * kOutlinePeriodUs;
     const auto own = sim::StateAt(scene.own_motion, boat.reference_point_above_water_m, time_s);
-    truth.AddOutline(sim::kOwnVessel, utime_us, OnEarth(map, OutlineAt(own.position_map_m.head<2>(), own.heading_rad, HullOf(boat))));
+    truth.AddOutline(sim::kOwnVessel, utime_us, OnEarth(map, OutlineAt(own.position_map_m.head<2>(), own.heading_rad, OwnHullOf(boat))));
     for (const auto& object : scene.objects) {
       if (!object.track.is_moving()) continue;
       const auto place = object.track.At(time_s);
@@ -157,7 +148,7 @@ void ReadOwnRows(const CaptureWithTruth& files, const config::BoatFacts& boat, T
   while (csv.Next()) {
     const auto map = MapAt(csv.Number(1), csv.Number(2));
     truth.AddOutline(importer::kOwnVesselObject, csv.WholeNumber(0, 0, kMaxTime),
-                     OnEarth(map, OutlineAt(Eigen::Vector2d::Zero(), DegToRad(csv.Number(3)), HullOf(boat))));
+                     OnEarth(map, OutlineAt(Eigen::Vector2d::Zero(), DegToRad(csv.Number(3)), OwnHullOf(boat))));
   }
 }
 
@@ -174,6 +165,13 @@ void ReadReturnRows(const CaptureWithTruth& files, Truth& truth) {
 }
 
 }  // namespace
+
+Polygon OwnHullOf(const config::BoatFacts& boat) {
+  const auto center_m = boat.own_vessel_box_m.center();
+  Eigen::Vector2d half_m = boat.own_vessel_box_m.sizes().head<2>() / 2.0;
+  if (boat.hull_m) half_m = half_m.cwiseMin(Eigen::Vector2d(boat.hull_m->length_m, boat.hull_m->beam_m) / 2.0);
+  return sim::Rectangle(center_m.x() - half_m.x(), center_m.x() + half_m.x(), center_m.y() - half_m.y(), center_m.y() + half_m.y());
+}
 
 void SimulateRun(const fs::path& config_folder, const fs::path& scene_file, std::uint64_t seed, double seconds, Truth& truth,
                  const DatagramHandler& on_datagram) {
@@ -209,6 +207,21 @@ void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth
   ReadObjectRows(files, truth);
   ReadReturnRows(files, truth);
   SendCapture(files, on_datagram);
+}
+
+void ReadRunOfObjects(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram) {
+  ReadOwnRows(files, boat, truth);
+  ReadObjectRows(files, truth);
+  SendCapture(files, on_datagram);
+}
+
+std::map<std::int64_t, std::map<int, int>> ReadReturnCounts(const CaptureWithTruth& files) {
+  std::map<std::int64_t, std::map<int, int>> counts;
+  importer::CsvFile csv(files.objects, {"utime_us", "object_id", "returns"});
+  while (csv.Next()) {
+    counts[csv.WholeNumber(0, 0, kMaxTime)][static_cast<int>(csv.WholeNumber(1, 1, kMaxId))] = static_cast<int>(csv.WholeNumber(2, 0, kMaxId));
+  }
+  return counts;
 }
 
 TempFolder::TempFolder() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 
 #include "common/config/boat.hpp"
@@ -22,6 +23,10 @@ using DatagramHandler = std::function<void(const replay::Datagram&)>;
 void SimulateRun(const std::filesystem::path& config_folder, const std::filesystem::path& scene_file, std::uint64_t seed, double seconds,
                  Truth& truth, const DatagramHandler& on_datagram);
 
+/// The own hull in the vessel frame, as lookout-tracker has it: in the middle of the box of own returns, no larger than it; the whole box where the
+/// size of the hull is not set. Its corners are those of the outline of the own boat in the truth, in their order.
+Polygon OwnHullOf(const config::BoatFacts& boat);
+
 /// Time by which a return of a capture and of its truth may differ.
 inline constexpr std::int64_t kCaptureToleranceUs = 3;
 
@@ -35,6 +40,12 @@ void SendCapture(const CaptureWithTruth& files, const DatagramHandler& on_datagr
 /// @param truth  empty, of tolerance kCaptureToleranceUs; all of it is read before the first datagram
 /// @throws std::runtime_error "file:line: reason"
 void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram);
+
+/// The same without the objects of returns: no .truth.csv.xz need be there.
+void ReadRunOfObjects(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram);
+
+/// Returns of each object in each scan of a capture, as .objects.csv.xz counts them: by the time of the middle of the scan, then by object.
+std::map<std::int64_t, std::map<int, int>> ReadReturnCounts(const CaptureWithTruth& files);
 
 /// A new, empty folder that goes with all that is in it.
 class TempFolder {

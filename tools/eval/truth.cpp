@@ -50,6 +50,12 @@ std::optional<Polygon> Outlines::At(int object_id, std::int64_t utime_us) const 
   return outline_m;
 }
 
+std::optional<TruthSpan> Outlines::SpanOf(int object_id) const {
+  const auto object = by_object_.find(object_id);
+  if (object == by_object_.end()) return std::nullopt;
+  return TruthSpan{object->second.begin()->first, object->second.rbegin()->first};
+}
+
 Truth::Truth(const std::filesystem::path& folder) {
   constexpr auto kMaxTime = std::numeric_limits<std::int64_t>::max();
   constexpr auto kMinId = std::numeric_limits<int>::min();
@@ -89,6 +95,15 @@ void Truth::AddReturns(std::vector<Return> returns) {
 
 void Truth::ForgetReturnsBefore(std::int64_t utime_us) {
   while (!returns_.empty() && returns_.front().utime_us < utime_us) returns_.pop_front();
+}
+
+std::map<int, int> Truth::CountReturns(const TruthSpan& window) const {
+  std::map<int, int> counts;
+  for (auto made = std::ranges::lower_bound(returns_, window.begin_us, {}, &Return::utime_us);
+       made != returns_.end() && made->utime_us <= window.end_us; ++made) {
+    ++counts[made->object_id];
+  }
+  return counts;
 }
 
 const Truth::Return* Truth::Find(std::int64_t utime_us, int ring, int return_index) const {

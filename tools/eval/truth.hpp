@@ -58,6 +58,8 @@ class Outlines {
   /// @return the outline at a time, between two of a moving object vertex by vertex; before the first and after the last that one itself;
   ///         nullopt for an object without outline
   std::optional<Polygon> At(int object_id, std::int64_t utime_us) const;
+  /// From the first outline of an object to the last; nullopt for an object without outline.
+  std::optional<TruthSpan> SpanOf(int object_id) const;
 
  private:
   std::map<int, std::map<std::int64_t, Polygon>> by_object_;
@@ -89,6 +91,8 @@ class Truth {
   /// @param returns  some microseconds of them, in any order; those of later calls are later
   void AddReturns(std::vector<Return> returns);
   void ForgetReturnsBefore(std::int64_t utime_us);
+  /// By object. @param window  times; both are in it
+  std::map<int, int> CountReturns(const TruthSpan& window) const;
 
   /// @return a return; times that differ by a microsecond are the same one (a laser fires every 55 us). nullptr = not in the truth
   const Return* Find(std::int64_t utime_us, int ring, int return_index) const;

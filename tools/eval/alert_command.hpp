@@ -1,0 +1,29 @@
+// lookout-eval --alerts: the boat's alerts against the truth of simulated scenes and of captures.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "tools/eval/run_plan.hpp"
+
+namespace lookout::eval {
+
+struct AlertOptions {
+  std::filesystem::path config_folder;
+  RunPlan plan;                                    // scenes may be none
+  bool is_tuning = false;                          // seeds of tuning
+  std::vector<std::filesystem::path> captures;     // folders; one that does not exist is said, and left out
+  std::size_t num_jobs = 1;                        // runs at once
+  std::filesystem::path csv_folder;                // empty = none
+  std::filesystem::path list_file;                 // each alert and danger, a row of CSV; empty = none
+  bool is_forced = false;                          // files that are there are replaced
+  std::vector<std::filesystem::path> block_files;  // in whose marked blocks the tables are written (FillBlocks)
+};
+
+/// Runs all services on each scene and seed, and on each capture, and prints the tables to stdout, progress to stderr. @return exit code
+/// The same figures for any number of jobs. @throws config::ConfigError; std::invalid_argument for seeds of the other range; std::runtime_error for
+/// files
+int EvaluateAlerts(const AlertOptions& options);
+
+}  // namespace lookout::eval
