@@ -22,7 +22,7 @@ constexpr double kRightBesideRad = DegToRad(5.0);
 constexpr double kFarBesideRad = DegToRad(15.0);
 constexpr double kOtherSideRad = DegToRad(60.0);
 constexpr double kNearerThanHalf = 0.5;
-constexpr double kTouchM = 0.02;
+constexpr double kInsideM = 1e-6;
 // More than scans can be apart.
 constexpr double kMostStepS = 1.0;
 // So much later than the look-ahead an alert is still about what will be.
@@ -211,12 +211,12 @@ void AlertJudge::Add(const AlertScan& scan) {
     scores_.num_runs = 1;
   }
   const double passed_s = is_first ? 0.0 : std::clamp(SecondsOf(scan.utime_us - newest_us_), 0.0, kMostStepS);
-  has_touched_ = has_touched_ || std::ranges::any_of(scan.things, [&](const AlertThing& thing) {
-                   return thing.outline_m->Gap(scan.own.hull_m, 2.0 * kTouchM) <= kTouchM;
-                 });
+  has_run_in_ = has_run_in_ || std::ranges::any_of(scan.things, [&](const AlertThing& thing) {
+                  return thing.outline_m->Distance(scan.own.reference_m, kInsideM) < kInsideM;
+                });
   newest_us_ = scan.utime_us;
-  if (has_touched_) {
-    scores_.touched_s += passed_s;
+  if (has_run_in_) {
+    scores_.run_in_s += passed_s;
     return;
   }
   now_us_ = scan.utime_us;

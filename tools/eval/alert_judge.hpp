@@ -122,7 +122,7 @@ class AlertJudge {
   std::optional<std::int64_t> first_us_;
   std::int64_t now_us_ = 0;     // of the last scan that was judged
   std::int64_t newest_us_ = 0;  // of the last scan
-  bool has_touched_ = false;
+  bool has_run_in_ = false;
   std::vector<Evaluated> evaluated_;          // of this scan
   std::map<int, std::deque<Look>> looks_;     // by thing: of the last scans
   std::map<std::int64_t, Episode> episodes_;  // by alert: those that hold

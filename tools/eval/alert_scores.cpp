@@ -45,7 +45,7 @@ void AlertScores::Add(const AlertScores& other) {
   num_early_alerts += other.num_early_alerts;
   num_open_dangers += other.num_open_dangers;
   num_turning_dangers += other.num_turning_dangers;
-  touched_s += other.touched_s;
+  run_in_s += other.run_in_s;
 }
 
 }  // namespace lookout::eval

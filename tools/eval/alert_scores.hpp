@@ -64,7 +64,7 @@ struct AlertScores {
   std::int64_t num_early_alerts = 0;     // before the truth and the boat's map were known
   std::int64_t num_open_dangers = 0;     // the run ended before it was known whether they are told in time
   std::int64_t num_turning_dangers = 0;  // by the tangent of a turn alone
-  double touched_s = 0.0;                // after the own hull had touched another one: no truth is of such a run
+  double run_in_s = 0.0;                 // after the own boat went through a thing, as a simulated one may: no lidar sees that so
 
   std::vector<AlertEvent> events;  // of one run: not added
 

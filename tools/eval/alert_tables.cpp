@@ -76,10 +76,10 @@ NamedTable StandingTable(const std::vector<AlertRow>& rows) {
 }
 
 NamedTable LeftOutTable(const std::vector<AlertRow>& rows) {
-  Table table({"scene", "watch", "early", "open_dangers", "turning_dangers", "touched_s"});
+  Table table({"scene", "watch", "early", "open_dangers", "turning_dangers", "run_in_s"});
   for (const auto& [scene, scores] : rows) {
     table.Add({scene, Number(scores.num_watch_alerts), Number(scores.num_early_alerts), Number(scores.num_open_dangers),
-               Number(scores.num_turning_dangers), Number(scores.touched_s, 0)});
+               Number(scores.num_turning_dangers), Number(scores.run_in_s, 0)});
   }
   return {"alerts_left_out", "alerts: what is left out, since the truth does not know it", std::move(table)};
 }
