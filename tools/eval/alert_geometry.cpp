@@ -166,8 +166,9 @@ double HullOutline::Gap(const Polygon& hull_m, double enough_m) const {
   }
   // One may lie wholly within the other.
   if (box_gap_m == 0.0 && (IsInside(hull_m.front(), corners_m_) || IsInside(corners_m_.front(), hull_m))) return 0.0;
-  // Blocks that were left out are nearer than the edges that were looked at only where both are more than enough.
-  return least_m2 > enough_m2 ? std::max(enough_m, std::sqrt(least_block_m2)) : std::sqrt(least_m2);
+  if (least_m2 <= enough_m2) return std::sqrt(least_m2);
+  // Blocks that were left out may be nearer than the edges that were looked at, and both are more than enough.
+  return std::max(std::nextafter(enough_m, std::numeric_limits<double>::infinity()), std::sqrt(least_block_m2));
 }
 
 Vector2d HullOutline::NearestPoint(const Vector2d& p_m) const {
