@@ -80,6 +80,13 @@ AlertScores JudgeRun(const fs::path& config_folder, const std::string& scene, co
   return run->scores();
 }
 
+// A boat in its berth may lie there for hours. Under way things are in each other's way once the scene is over.
+double SecondsOfRun(const fs::path& file, std::uint64_t seed, const AlertOptions& options) {
+  const auto scene = sim::LoadScene(file, seed);
+  if (scene.own_motion.semi_axes_m.isZero() && !scene.own_motion.track.is_moving()) return options.berth_seconds;
+  return std::min(options.plan.seconds, scene.lasts_s.value_or(options.plan.seconds));
+}
+
 AlertScores JudgeScene(const fs::path& config_folder, const fs::path& file, const std::string& scene, std::uint64_t seed, double seconds) {
   Truth truth(1);
   const auto count_returns = [&truth](const TruthSpan& scan) {
@@ -111,7 +118,8 @@ std::vector<AlertJob> SceneJobs(const AlertOptions& options) {
     const auto scene = SceneLabel(name);
     for (int k = 0; k < options.plan.num_seeds; ++k) {
       const auto seed = options.plan.first_seed + static_cast<std::uint64_t>(k);
-      jobs.push_back({scene, seed, [=, &options] { return JudgeScene(options.config_folder, file, scene, seed, options.plan.seconds); }});
+      jobs.push_back(
+          {scene, seed, [=, &options] { return JudgeScene(options.config_folder, file, scene, seed, SecondsOfRun(file, seed, options)); }});
     }
   }
   return jobs;
@@ -166,9 +174,11 @@ AlertWorld JudgeWorld(const std::string& name, const std::string& over_all, cons
 
 std::vector<ReadmeFigure> AlertFiguresOf(const AlertOptions& options, bool has_captures, const std::vector<NamedTable>& tables) {
   const auto& plan = options.plan;
-  const auto scope = fmt::format("Own simulator: {} scenes, {} seeds each from {} on, {:.0f} s a seed. The second world: {}.", plan.scenes.size(),
-                                 plan.num_seeds, plan.first_seed, plan.seconds, has_captures ? "all of its captures" : "not here");
-  const auto measured = fmt::format("Measured {}, version {}.", Today(), runtime::Version());
+  const auto scope = fmt::format(
+      "Own simulator: {} scenes, {} seeds each from {} on, {:.0f} s a seed, or as long as the scene lasts; in a berth {:.0f} s. The second world: "
+      "{}.",
+      plan.scenes.size(), plan.num_seeds, plan.first_seed, plan.seconds, options.berth_seconds, has_captures ? "all of its captures" : "not here");
+  const auto measured = fmt::format("Measured {} by `./dev alert-figures`, version {}.", Today(), runtime::Version());
   std::vector<ReadmeFigure> figures;
   figures.reserve(tables.size());
   for (const auto& [name, title, table, is_printed] : tables) figures.push_back({name, {title + ".", measured, scope}, table});

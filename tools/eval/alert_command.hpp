@@ -11,7 +11,8 @@ namespace lookout::eval {
 
 struct AlertOptions {
   std::filesystem::path config_folder;
-  RunPlan plan;                                    // scenes may be none
+  RunPlan plan;                                    // scenes may be none; a run is no longer than its scene says that it lasts
+  double berth_seconds = 60.0;                     // of each seed, where the own boat lies in its berth
   bool is_tuning = false;                          // seeds of tuning
   std::vector<std::filesystem::path> captures;     // folders; one that does not exist is said, and left out
   std::size_t num_jobs = 1;                        // runs at once

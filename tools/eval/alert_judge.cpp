@@ -22,6 +22,7 @@ constexpr double kRightBesideRad = DegToRad(5.0);
 constexpr double kFarBesideRad = DegToRad(15.0);
 constexpr double kOtherSideRad = DegToRad(60.0);
 constexpr double kNearerThanHalf = 0.5;
+constexpr double kOutlineGateM = 1.0;
 constexpr double kInsideM = 1e-6;
 // More than scans can be apart.
 constexpr double kMostStepS = 1.0;
@@ -104,12 +105,12 @@ AlertJudge::Evaluated AlertJudge::Evaluate(const AlertScan& scan, const AlertThi
 }
 
 const AlertJudge::Evaluated* AlertJudge::FindThing(const AlertScan& scan, const JudgedAlert& alert) const {
-  const auto nearest_to = [this](const auto& distance_of) {
+  const auto nearest_to = [this](double gate_m, const auto& distance_of) {
     const Evaluated* nearest = nullptr;
-    double least_m = kAlertGateM;
+    double least_m = gate_m;
     for (const auto& one : evaluated_) {
       const double distance_m = distance_of(*one.thing->outline_m);
-      if (distance_m > kAlertGateM || (nearest != nullptr && distance_m >= least_m)) continue;
+      if (distance_m > gate_m || (nearest != nullptr && distance_m >= least_m)) continue;
       nearest = &one;
       least_m = distance_m;
     }
@@ -118,12 +119,13 @@ const AlertJudge::Evaluated* AlertJudge::FindThing(const AlertScan& scan, const 
   if (!alert.track) {
     const Vector2d place_m = PlaceTold(scan.own, alert);
     if (!place_m.allFinite()) return nullptr;
-    return nearest_to([&](const HullOutline& outline_m) { return outline_m.Distance(place_m, kAlertGateM); });
+    return nearest_to(kAlertGateM, [&](const HullOutline& outline_m) { return outline_m.Distance(place_m, kAlertGateM); });
   }
-  const auto* at_position = nearest_to([&](const HullOutline& outline_m) { return outline_m.Distance(alert.track->position_m, kAlertGateM); });
+  const auto* at_position =
+      nearest_to(kAlertGateM, [&](const HullOutline& outline_m) { return outline_m.Distance(alert.track->position_m, kAlertGateM); });
   if (at_position != nullptr || alert.track->outline_m.empty()) return at_position;
   // The middle of a long or bent thing may lie in the water.
-  return nearest_to([&](const HullOutline& outline_m) { return outline_m.Gap(alert.track->outline_m, kAlertGateM); });
+  return nearest_to(kOutlineGateM, [&](const HullOutline& outline_m) { return outline_m.Gap(alert.track->outline_m, kOutlineGateM); });
 }
 
 AlertVerdict AlertJudge::VerdictOf(const AlertScan& scan, const JudgedAlert& alert, const Evaluated* found) const {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct Options {
   bool has_alerts = false;       // alerts on runs, in place of methods on scans
   std::vector<std::filesystem::path> captures;
   std::filesystem::path list_file;
+  std::optional<double> berth_seconds;
   std::size_t num_jobs = 1;
 };
 
@@ -106,6 +108,10 @@ Options ParseOptions(int argc, char** argv) {
   auto* tracks = needs_config(app.add_flag("--tracks", options.has_tracks, "trackers on runs of all services, in place of methods on scans"));
   auto* alerts = needs_config(app.add_flag("--alerts", options.has_alerts, "alerts on runs of all services, in place of methods on scans"));
   app.add_option("--list", options.list_file, "with --alerts: write each alert and each danger, as a row of a CSV file")->needs(alerts);
+  app.add_option("--berth-seconds", options.berth_seconds,
+                 "with --alerts: of each seed of scenes in which the own boat lies still (default: --seconds)")
+      ->check(CLI::Range(1.0, 36'000.0))
+      ->needs(alerts);
   app.add_option("--jobs", options.num_jobs, "with --alerts: runs at once; the figures are the same")
       ->check(CLI::Range(1, 256))
       ->needs(alerts)
@@ -153,8 +159,9 @@ int EvaluateTracks(const eval::ComparisonOptions& options) {
 int EvaluateAlerts(const Options& options) {
   const auto& comparison = options.comparison;
   const auto use = comparison.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
-  return eval::EvaluateAlerts({comparison.config_folder, eval::PlanOf(comparison, use), comparison.is_tuning, options.captures, options.num_jobs,
-                               comparison.csv_folder, options.list_file, comparison.is_forced, comparison.block_files});
+  return eval::EvaluateAlerts({comparison.config_folder, eval::PlanOf(comparison, use), options.berth_seconds.value_or(comparison.seconds),
+                               comparison.is_tuning, options.captures, options.num_jobs, comparison.csv_folder, options.list_file,
+                               comparison.is_forced, comparison.block_files});
 }
 
 }  // namespace

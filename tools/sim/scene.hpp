@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -72,6 +73,7 @@ struct Scene {
   std::vector<SceneObject> objects;
   Sea sea{};
   Effects effects{};
+  std::optional<double> lasts_s{};  // where the file says how long things keep their distances
 };
 
 /// The own boat in the vessel frame: deck, outboard motor and the antenna's post, 0.2 m inside of the box around the own vessel at its sides.
