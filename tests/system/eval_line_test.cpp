@@ -77,6 +77,31 @@ TEST_F(EvalLine, TracksHaveTheirOwnTablesAndSeeds) {
   EXPECT_EQ(Run(with_methods).exit_code, 2);
 }
 
+TEST_F(EvalLine, AlertsHaveTheirOwnTablesAndList) {
+  const std::vector<std::string> line{"--alerts", "--scenes", "crossing", "--seeds", "2", "--seconds", "2"};
+  const auto with = [&line](std::vector<std::string> more) {
+    more.insert(more.begin(), line.begin(), line.end());
+    return more;
+  };
+  const auto result = Run(with({"--csv", Path("csv"), "--list", Path("one.csv")}));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  for (const auto* text : {"false_h", "delay_median_s", "standing_mean", "turning_dangers", "all scenes"}) {
+    EXPECT_NE(result.output.find(text), std::string::npos) << text;
+  }
+  EXPECT_TRUE(fs::exists(Path("csv") + "/alerts_verdicts.csv"));
+  EXPECT_EQ(Run(with({"--list", Path("one.csv")})).exit_code, 1) << "a list was replaced unasked";
+  // The same with two runs at once.
+  EXPECT_EQ(Run(with({"--list", Path("two.csv"), "--jobs", "2"})).exit_code, 0);
+  EXPECT_EQ(ReadFile(Path("one.csv")), ReadFile(Path("two.csv")));
+  EXPECT_NE(ReadFile(Path("one.csv")).find("scene,seed,second,verdict"), std::string::npos);
+  EXPECT_EQ(Run(with({"--first-seed", "1"})).exit_code, 2);
+  EXPECT_EQ(Run(with({"--tracks"})).exit_code, 2);
+  EXPECT_EQ(Run(with({"--methods", "ours"})).exit_code, 2);
+  EXPECT_EQ(Run({"--alerts"}).exit_code, 2);
+  EXPECT_EQ(Run({"--scenes", "crossing", "--list", Path("three.csv")}).exit_code, 2);
+  EXPECT_EQ(Run({"--tracks", "--captures", Path("one"), Path("two")}).exit_code, 2);
+}
+
 TEST_F(EvalLine, AutoferryNeedsAFolderOfScenarios) {
   EXPECT_EQ(Run({"--autoferry", Path("none")}).exit_code, 2);
   fs::create_directory(Path("ferry"));

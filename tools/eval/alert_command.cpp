@@ -178,7 +178,7 @@ std::vector<ReadmeFigure> AlertFiguresOf(const AlertOptions& options, bool has_c
       "Own simulator: {} scenes, {} seeds each from {} on, {:.0f} s a seed, or as long as the scene lasts; in a berth {:.0f} s. The second world: "
       "{}.",
       plan.scenes.size(), plan.num_seeds, plan.first_seed, plan.seconds, options.berth_seconds, has_captures ? "all of its captures" : "not here");
-  const auto measured = fmt::format("Measured {} by `./dev alert-figures`, version {}.", Today(), runtime::Version());
+  const auto measured = fmt::format("Measured {} by `./dev figures`, version {}.", Today(), runtime::Version());
   std::vector<ReadmeFigure> figures;
   figures.reserve(tables.size());
   for (const auto& [name, title, table, is_printed] : tables) figures.push_back({name, {title + ".", measured, scope}, table});

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The figures of ALERTS.md, measured anew: ./dev alert-figures. Half an hour on one core; the tables are the same each time, but for the date.
+# The figures of ALERTS.md, measured anew: a part of ./dev figures, alone ./dev alert-figures. Half an hour on one core; the tables are the same each time, but for the date.
 #   tools/eval/alert_figures.sh [SEEDS [BERTH_SECONDS]]   seeds of each scene (default 3), seconds of each seed in a berth (default 400)
 # The captures of the second world lie beside the project; where they do not, the figures say so.
 set -euo pipefail

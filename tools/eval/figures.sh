@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The figures of the README files, measured anew: ./dev figures. Half an hour on one core; the tables are the same each time, but for times and date.
+# The figures of the README files, measured anew: ./dev figures. An hour on one core; the tables are the same each time, but for times and date.
 #   tools/eval/figures.sh [SEEDS]   seeds of each scene (default 20)
 # The captures of the second world lie beside the project, or where LOOKOUT_CAPTURES says; where they do not, the figures say so.
 set -euo pipefail
@@ -17,3 +17,4 @@ build/release/bin/lookout-eval --config config/catabot --tracks --scenes all --s
 if [ -d "$recordings/autoferry" ]; then
   build/release/bin/lookout-eval --autoferry "$recordings/autoferry" --blocks "${readmes[@]}"
 fi
+tools/eval/alert_figures.sh
