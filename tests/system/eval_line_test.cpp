@@ -94,11 +94,17 @@ TEST_F(EvalLine, AlertsHaveTheirOwnTablesAndList) {
   EXPECT_EQ(Run(with({"--list", Path("two.csv"), "--jobs", "2"})).exit_code, 0);
   EXPECT_EQ(ReadFile(Path("one.csv")), ReadFile(Path("two.csv")));
   EXPECT_NE(ReadFile(Path("one.csv")).find("scene,seed,second,verdict"), std::string::npos);
+  // The same where what the tracker reads is kept, and where it comes from there.
+  for (const auto* list : {"three.csv", "four.csv"}) {
+    EXPECT_EQ(Run(with({"--list", Path(list), "--keep", Path("kept")})).exit_code, 0);
+    EXPECT_EQ(ReadFile(Path("one.csv")), ReadFile(Path(list)));
+  }
+  EXPECT_TRUE(fs::exists(Path("kept") + "/crossing-101-2.run"));
   EXPECT_EQ(Run(with({"--first-seed", "1"})).exit_code, 2);
   EXPECT_EQ(Run(with({"--tracks"})).exit_code, 2);
   EXPECT_EQ(Run(with({"--methods", "ours"})).exit_code, 2);
   EXPECT_EQ(Run({"--alerts"}).exit_code, 2);
-  EXPECT_EQ(Run({"--scenes", "crossing", "--list", Path("three.csv")}).exit_code, 2);
+  EXPECT_EQ(Run({"--scenes", "crossing", "--list", Path("five.csv")}).exit_code, 2);
   EXPECT_EQ(Run({"--tracks", "--captures", Path("one"), Path("two")}).exit_code, 2);
 }
 

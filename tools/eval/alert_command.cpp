@@ -18,18 +18,21 @@
 #include <thread>
 #include <utility>
 
+#include "common/bus/channels.hpp"
 #include "common/config/boat.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "services/tracker/params.hpp"
+#include "tools/eval/alert_kept.hpp"
 #include "tools/eval/alert_run.hpp"
 #include "tools/eval/alert_tables.hpp"
 #include "tools/eval/figures.hpp"
 #include "tools/eval/track_sources.hpp"
 #include "tools/eval/track_tables.hpp"
 #include "tools/replay/chain.hpp"
+#include "tools/replay/plan.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace lookout::eval {
@@ -58,15 +61,27 @@ struct AlertJob {
   std::function<AlertScores()> run;
 };
 
+void AddTo(AlertRun& run, const std::string& scene, std::string_view channel, Bytes bytes) {
+  if (!run.Add(channel, bytes)) throw std::runtime_error(scene + ": a message on " + std::string(channel) + " cannot be used");
+}
+
+AlertScores ScoresOf(AlertRun& run, const std::string& scene) {
+  run.Finish();
+  if (run.num_scans() == 0) throw std::runtime_error(scene + ": no scan with a known position");
+  return run.scores();
+}
+
 // `feed` is called with the handler of its datagrams; the truth knows its objects before the first.
+// `also` sees each message, behind the run.
 template <typename Feed>
 AlertScores JudgeRun(const fs::path& config_folder, const std::string& scene, const Truth& truth, const AlertRun::CountReturns& count_returns,
-                     const Feed& feed) {
+                     const replay::Chain::Sink& also, const Feed& feed) {
   const auto rules = RulesOf(config_folder);
   const auto own_hull_m = OwnHullOf(config::LoadBoat(config_folder));
   std::optional<AlertRun> run;
-  replay::Chain chain(config_folder, {}, [&](Utime, std::string_view channel, Bytes bytes) {
-    if (!run->Add(channel, bytes)) throw std::runtime_error(scene + ": a message on " + std::string(channel) + " cannot be used");
+  replay::Chain chain(config_folder, {}, [&](Utime time, std::string_view channel, Bytes bytes) {
+    AddTo(*run, scene, channel, bytes);
+    if (also) also(time, channel, bytes);
   });
   feed([&](const replay::Datagram& datagram) {
     io::ThrowIfStopAsked();
@@ -75,9 +90,7 @@ AlertScores JudgeRun(const fs::path& config_folder, const std::string& scene, co
   });
   if (!run) throw std::runtime_error(scene + ": no datagram");
   chain.Finish();
-  run->Finish();
-  if (run->num_scans() == 0) throw std::runtime_error(scene + ": no scan with a known position");
-  return run->scores();
+  return ScoresOf(*run, scene);
 }
 
 // A boat in its berth may lie there for hours. Under way things are in each other's way once the scene is over.
@@ -87,15 +100,52 @@ double SecondsOfRun(const fs::path& file, std::uint64_t seed, const AlertOptions
   return std::min(options.plan.seconds, scene.lasts_s.value_or(options.plan.seconds));
 }
 
-AlertScores JudgeScene(const fs::path& config_folder, const fs::path& file, const std::string& scene, std::uint64_t seed, double seconds) {
+// What runs in a run that was kept: the tracker.
+AlertScores JudgeKept(const AlertOptions& options, const fs::path& scene_file, const std::string& scene, std::uint64_t seed, double seconds,
+                      const fs::path& file) {
+  const KeptRun kept(file);
   Truth truth(1);
-  const auto count_returns = [&truth](const TruthSpan& scan) {
+  AddSceneTruth(options.config_folder, scene_file, seed, seconds, truth);
+  const auto count_returns = [&kept](const TruthSpan& scan) {
+    const auto counts = kept.returns().find(scan.begin_us);
+    return counts == kept.returns().end() ? std::map<int, int>{} : counts->second;
+  };
+  const replay::ChannelSet present{std::string(bus::kLidarScan.name), std::string(bus::kSegments.name), std::string(bus::kObstacles.name),
+                                   std::string(bus::kPose.name)};
+  const auto plan = replay::MakeLogPlan({.only = {"tracker"}}, present);
+  AlertRun run(truth, OwnHullOf(config::LoadBoat(options.config_folder)), RulesOf(options.config_folder), count_returns);
+  replay::Chain chain(options.config_folder, plan, [&](Utime, std::string_view channel, Bytes bytes) { AddTo(run, scene, channel, bytes); });
+  kept.Send([&](Utime time, std::string_view channel, Bytes bytes) {
+    io::ThrowIfStopAsked();
+    chain.OnLogged(time, *bus::FindChannel(channel), bytes);
+  });
+  chain.Finish();
+  return ScoresOf(run, scene);
+}
+
+AlertScores JudgeScene(const AlertOptions& options, const fs::path& file, const std::string& scene, std::uint64_t seed) {
+  const double seconds = SecondsOfRun(file, seed, options);
+  std::optional<KeptRunWriter> kept;
+  if (!options.kept_folder.empty()) {
+    const auto kept_file = options.kept_folder / fmt::format("{}-{}-{:.0f}.run", scene, seed, seconds);
+    const auto fingerprint = FingerprintOfRun(options.config_folder, file, seed, seconds);
+    if (KeptRun::IsThere(kept_file, fingerprint)) return JudgeKept(options, file, scene, seed, seconds, kept_file);
+    kept.emplace(kept_file, fingerprint);
+  }
+  Truth truth(1);
+  const auto count_returns = [&](const TruthSpan& scan) {
     auto counts = truth.CountReturns(scan);
     truth.ForgetReturnsBefore(scan.begin_us - kReturnsKeptUs);
+    if (kept) kept->AddReturns(scan.begin_us, counts);
     return counts;
   };
-  return JudgeRun(config_folder, scene, truth, count_returns,
-                  [&](const DatagramHandler& on_datagram) { SimulateRun(config_folder, file, seed, seconds, truth, on_datagram); });
+  const auto also = [&kept](Utime time, std::string_view channel, Bytes bytes) {
+    if (kept) kept->AddMessage(time, channel, bytes);
+  };
+  auto scores = JudgeRun(options.config_folder, scene, truth, count_returns, also,
+                         [&](const DatagramHandler& on_datagram) { SimulateRun(options.config_folder, file, seed, seconds, truth, on_datagram); });
+  if (kept) kept->Commit();
+  return scores;
 }
 
 AlertScores JudgeCapture(const fs::path& config_folder, const std::string& scene, const CaptureWithTruth& files) {
@@ -107,7 +157,7 @@ AlertScores JudgeCapture(const fs::path& config_folder, const std::string& scene
     const auto next = counted.lower_bound(middle_us - kCountWithinUs);
     return next != counted.end() && next->first <= middle_us + kCountWithinUs ? next->second : std::map<int, int>{};
   };
-  return JudgeRun(config_folder, scene, truth, count_returns,
+  return JudgeRun(config_folder, scene, truth, count_returns, nullptr,
                   [&](const DatagramHandler& on_datagram) { ReadRunOfObjects(files, boat, truth, on_datagram); });
 }
 
@@ -118,8 +168,7 @@ std::vector<AlertJob> SceneJobs(const AlertOptions& options) {
     const auto scene = SceneLabel(name);
     for (int k = 0; k < options.plan.num_seeds; ++k) {
       const auto seed = options.plan.first_seed + static_cast<std::uint64_t>(k);
-      jobs.push_back(
-          {scene, seed, [=, &options] { return JudgeScene(options.config_folder, file, scene, seed, SecondsOfRun(file, seed, options)); }});
+      jobs.push_back({scene, seed, [=, &options] { return JudgeScene(options, file, scene, seed); }});
     }
   }
   return jobs;
@@ -195,6 +244,7 @@ int EvaluateAlerts(const AlertOptions& options) {
   if (options.plan.scenes.empty() && options.captures.empty()) throw std::invalid_argument("--alerts needs --scenes or --captures");
   replay::CheckConfig(options.config_folder);
   io::CatchStopSignals();
+  if (!options.kept_folder.empty()) fs::create_directories(options.kept_folder);
   // Outputs before all work.
   FillBlocksOf(options.block_files, {});
   std::vector<std::unique_ptr<io::OutputFile>> files;

@@ -16,6 +16,7 @@ struct AlertOptions {
   bool is_tuning = false;                          // seeds of tuning
   std::vector<std::filesystem::path> captures;     // folders; one that does not exist is said, and left out
   std::size_t num_jobs = 1;                        // runs at once
+  std::filesystem::path kept_folder;               // what the tracker reads is kept there, and used again (KeptRun); empty = none
   std::filesystem::path csv_folder;                // empty = none
   std::filesystem::path list_file;                 // each alert and danger, a row of CSV; empty = none
   bool is_forced = false;                          // files that are there are replaced

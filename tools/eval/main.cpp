@@ -37,6 +37,7 @@ struct Options {
   std::vector<std::filesystem::path> captures;
   std::filesystem::path list_file;
   std::optional<double> berth_seconds;
+  std::filesystem::path kept_folder;
   std::size_t num_jobs = 1;
 };
 
@@ -112,6 +113,8 @@ Options ParseOptions(int argc, char** argv) {
                  "with --alerts: of each seed of scenes in which the own boat lies still (default: --seconds)")
       ->check(CLI::Range(1.0, 36'000.0))
       ->needs(alerts);
+  app.add_option("--keep", options.kept_folder, "with --alerts: keep there what the tracker reads in simulated runs, and use it the next time")
+      ->needs(alerts);
   app.add_option("--jobs", options.num_jobs, "with --alerts: runs at once; the figures are the same")
       ->check(CLI::Range(1, 256))
       ->needs(alerts)
@@ -160,8 +163,8 @@ int EvaluateAlerts(const Options& options) {
   const auto& comparison = options.comparison;
   const auto use = comparison.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
   return eval::EvaluateAlerts({comparison.config_folder, eval::PlanOf(comparison, use), options.berth_seconds.value_or(comparison.seconds),
-                               comparison.is_tuning, options.captures, options.num_jobs, comparison.csv_folder, options.list_file,
-                               comparison.is_forced, comparison.block_files});
+                               comparison.is_tuning, options.captures, options.num_jobs, options.kept_folder, comparison.csv_folder,
+                               options.list_file, comparison.is_forced, comparison.block_files});
 }
 
 }  // namespace

@@ -173,6 +173,10 @@ Polygon OwnHullOf(const config::BoatFacts& boat) {
   return sim::Rectangle(center_m.x() - half_m.x(), center_m.x() + half_m.x(), center_m.y() - half_m.y(), center_m.y() + half_m.y());
 }
 
+void AddSceneTruth(const fs::path& config_folder, const fs::path& scene_file, std::uint64_t seed, double seconds, Truth& truth) {
+  AddOutlines(sim::LoadScene(scene_file, seed), config::LoadBoat(config_folder), seconds, truth);
+}
+
 void SimulateRun(const fs::path& config_folder, const fs::path& scene_file, std::uint64_t seed, double seconds, Truth& truth,
                  const DatagramHandler& on_datagram) {
   const auto boat = config::LoadBoat(config_folder);

@@ -23,6 +23,10 @@ using DatagramHandler = std::function<void(const replay::Datagram&)>;
 void SimulateRun(const std::filesystem::path& config_folder, const std::filesystem::path& scene_file, std::uint64_t seed, double seconds,
                  Truth& truth, const DatagramHandler& on_datagram);
 
+/// The same truth without the run: objects and outlines alone.
+void AddSceneTruth(const std::filesystem::path& config_folder, const std::filesystem::path& scene_file, std::uint64_t seed, double seconds,
+                   Truth& truth);
+
 /// The own hull in the vessel frame, as lookout-tracker has it: in the middle of the box of own returns, no larger than it; the whole box where the
 /// size of the hull is not set. Its corners are those of the outline of the own boat in the truth, in their order.
 Polygon OwnHullOf(const config::BoatFacts& boat);
