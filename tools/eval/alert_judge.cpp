@@ -40,6 +40,8 @@ double BearingOf(const AlertOwnBoat& own, const Vector2d& p_m) {
   return WrapTo2Pi(std::atan2(offset_m.x(), offset_m.y()) - own.heading_rad);
 }
 
+bool Stands(const AlertOwnBoat& own) { return own.motion.velocity_mps.norm() < kStandsBelowMps; }
+
 double SideOf(double one_rad, double other_rad) { return std::abs(WrapToPi(one_rad - other_rad)); }
 
 Polygon InVesselFrame(const AlertOwnBoat& own, const Polygon& corners_m) {
@@ -182,7 +184,7 @@ AlertEvent AlertJudge::EventOf(const AlertScan& scan, const JudgedAlert& alert, 
 
 void AlertJudge::Raise(const AlertScan& scan, const JudgedAlert& alert, const Evaluated* found) {
   const auto verdict = VerdictOf(scan, alert, found);
-  episodes_[alert.id] = {verdict, EventOf(scan, alert, found, verdict), alert.is_warning};
+  episodes_[alert.id] = {verdict, EventOf(scan, alert, found, verdict), alert.is_warning, Stands(scan.own)};
 }
 
 void AlertJudge::Tell(const AlertScan& scan, const JudgedAlert& alert, const Evaluated* found) {
@@ -224,6 +226,7 @@ void AlertJudge::Add(const AlertScan& scan) {
   now_us_ = scan.utime_us;
   ++scores_.num_scans;
   scores_.seconds += passed_s;
+  if (Stands(scan.own)) scores_.berth_s += passed_s;
 
   evaluated_.clear();
   evaluated_.reserve(scan.things.size());
@@ -323,6 +326,8 @@ void AlertJudge::FollowDanger(const AlertScan& scan, const Evaluated& one, Watch
 
 void AlertJudge::CloseEpisode(Episode episode) {
   ++scores_.num_alerts.at(episode.is_warning ? 1 : 0).at(static_cast<std::size_t>(episode.verdict));
+  const bool is_false = episode.verdict == AlertVerdict::kFar || episode.verdict == AlertVerdict::kNothing;
+  if (is_false && episode.is_in_berth) ++scores_.num_false_in_berth;
   episode.event.level = episode.is_warning ? "warning" : "caution";
   scores_.events.push_back(std::move(episode.event));
 }

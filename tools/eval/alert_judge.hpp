@@ -66,6 +66,7 @@ class AlertJudge {
     AlertVerdict verdict = AlertVerdict::kNothing;
     AlertEvent event;
     bool is_warning = false;
+    bool is_in_berth = false;  // when it came up
   };
   // That a thing is told by an alert.
   struct Told {

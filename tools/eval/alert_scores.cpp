@@ -34,6 +34,8 @@ void AlertScores::Add(const AlertScores& other) {
     for (std::size_t i = 0; i < kNumAlertVerdicts; ++i) num_alerts[level][i] += other.num_alerts[level][i];
   }
   for (std::size_t i = 0; i < kNumDangerVerdicts; ++i) num_dangers[i] += other.num_dangers[i];
+  berth_s += other.berth_s;
+  num_false_in_berth += other.num_false_in_berth;
   delay_s.Add(other.delay_s);
   standing.Add(other.standing);
   standing_warnings.Add(other.standing_warnings);

@@ -49,6 +49,9 @@ struct AlertScores {
 
   /// By level (caution, warning: the graver that the alert had while it held) and verdict.
   std::array<std::array<std::int64_t, kNumAlertVerdicts>, 2> num_alerts{};
+  /// While the own boat stood: how long, and alerts that came up then and are far or nothing.
+  double berth_s = 0.0;
+  std::int64_t num_false_in_berth = 0;
   std::array<std::int64_t, kNumDangerVerdicts> num_dangers{};
   Summary delay_s;  // of dangers: from when it can be known to its alert; infinite: missed
 

@@ -91,8 +91,6 @@ AlertWeather WeatherOfScene(const std::string& scene) {
   return is("waves") || is("rough") || is("rain") ? AlertWeather::kRough : AlertWeather::kClear;
 }
 
-bool IsMoored(const std::string& scene) { return scene.find("moored") != std::string::npos; }
-
 struct AlertTarget {
   std::string what;
   double most = 0.0;
@@ -102,18 +100,23 @@ struct AlertTarget {
 };
 
 std::vector<AlertTarget> AlertTargets() {
-  const auto moored = [](const std::string& scene) { return IsMoored(scene); };
-  const auto clear = [](const std::string& scene) { return !IsMoored(scene) && WeatherOfScene(scene) == AlertWeather::kClear; };
-  const auto rough = [](const std::string& scene) { return !IsMoored(scene) && WeatherOfScene(scene) == AlertWeather::kRough; };
   const auto any = [](const std::string& /*scene*/) { return true; };
-  const auto dense = [](const std::string& scene) { return !IsMoored(scene) && scene.find("dense") != std::string::npos; };
-  const auto marina = [](const std::string& scene) { return !IsMoored(scene) && scene.find("marina") != std::string::npos; };
-  const auto false_an_hour = [](const AlertScores& scores) { return AnHour(scores.NumFalse(), scores); };
+  const auto clear = [](const std::string& scene) { return WeatherOfScene(scene) == AlertWeather::kClear; };
+  const auto rough = [](const std::string& scene) { return WeatherOfScene(scene) == AlertWeather::kRough; };
+  const auto dense = [](const std::string& scene) { return scene.find("dense") != std::string::npos && scene.find("moored") == std::string::npos; };
+  const auto marina = [](const std::string& scene) { return scene.find("marina") != std::string::npos; };
+  const auto false_in_berth = [](const AlertScores& scores) {
+    return scores.berth_s > 0.0 ? static_cast<double>(scores.num_false_in_berth) * kSecondsOfHour / scores.berth_s : kNoFigure;
+  };
+  const auto false_under_way = [](const AlertScores& scores) {
+    const double under_way_s = scores.seconds - scores.berth_s;
+    return under_way_s > 0.0 ? static_cast<double>(scores.NumFalse() - scores.num_false_in_berth) * kSecondsOfHour / under_way_s : kNoFigure;
+  };
   const auto standing = [](const AlertScores& scores) { return scores.standing.value(); };
   return {
-      {"false alerts an hour, moored", 0.0, 1, moored, false_an_hour},
-      {"false alerts an hour, under way, clear", 1.0, 1, clear, false_an_hour},
-      {"false alerts an hour, under way, waves and rain", 6.0, 1, rough, false_an_hour},
+      {"false alerts an hour, moored", 0.0, 1, any, false_in_berth},
+      {"false alerts an hour, under way, clear", 1.0, 1, clear, false_under_way},
+      {"false alerts an hour, under way, waves and rain", 6.0, 1, rough, false_under_way},
       {"repeated, % of all alerts", 0.0, 1, any,
        [](const AlertScores& scores) { return PercentOfAll(scores.Num(AlertVerdict::kRepeated), scores.NumAlerts()); }},
       {"dangers missed, %", 0.0, 1, any,

@@ -187,6 +187,7 @@ TEST(AlertVerdicts, InABerthNothingApproaches) {
   run.Scan({Thing(1, {3.0, 0.0})}, {Approach(1, {3.0, 0.0})});
   EXPECT_EQ(TheVerdict(run.Scores()), AlertVerdict::kFar);
   EXPECT_EQ(run.judge.scores().NumDangers(), 0);
+  EXPECT_EQ(run.judge.scores().num_false_in_berth, 1);
 }
 
 TEST(AlertVerdicts, WhatWasSoInTheLastHalfSecondCounts) {

@@ -15,6 +15,10 @@ AlertRow RowOf(const std::string& scene, double hours, std::int64_t num_right, s
   row.scores.seconds = 3600.0 * hours;
   row.scores.num_alerts[1][static_cast<std::size_t>(AlertVerdict::kRight)] = num_right;
   row.scores.num_alerts[0][static_cast<std::size_t>(AlertVerdict::kFar)] = num_far;
+  if (scene == "moored") {
+    row.scores.berth_s = row.scores.seconds;
+    row.scores.num_false_in_berth = num_far;
+  }
   row.scores.num_dangers[static_cast<std::size_t>(std::isinf(delay_s) ? DangerVerdict::kMissed : DangerVerdict::kInTime)] = 1;
   row.scores.delay_s.Add(delay_s);
   return row;
@@ -35,8 +39,8 @@ TEST(AlertTables, RatesAreOfAllRunsTogether) {
   EXPECT_EQ(verdicts.rows()[3].front(), "all scenes");
   EXPECT_EQ(verdicts.rows()[3][10], "0.5");
   const auto& targets = TableOf(tables, "alerts_targets");
-  EXPECT_EQ(targets.rows()[1], (Table::Row{"own scenes", "false alerts an hour, moored", "<= 0.0", "0.5", "MISSED", "0.5 moored", "2.00"}));
-  EXPECT_EQ(targets.rows()[2], (Table::Row{"own scenes", "false alerts an hour, under way, clear", "<= 1.0", "0.5", "yes", "0.5 a", "2.00"}));
+  EXPECT_EQ(targets.rows()[1], (Table::Row{"own scenes", "false alerts an hour, moored", "<= 0.0", "0.5", "MISSED", "0.5 moored", "4.00"}));
+  EXPECT_EQ(targets.rows()[2], (Table::Row{"own scenes", "false alerts an hour, under way, clear", "<= 1.0", "0.5", "yes", "0.5 a", "4.00"}));
 }
 
 TEST(AlertTables, WhatIsMissedHasNoDelay) {
