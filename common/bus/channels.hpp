@@ -30,15 +30,16 @@ inline constexpr Channel kObstacles{"OBSTACLES", "obstacles_t", "georeferencer",
 inline constexpr Channel kTracks{"TRACKS", "tracks_t", "tracker", 80, 160, false, true};
 inline constexpr Channel kAlerts{"ALERTS", "alerts_t", "tracker", 22, 44, false, true};  // one a scan, and two a second where nobody looks
 inline constexpr Channel kMap{"MAP", "map_t", "tracker", 20, 40, false, true};           // a part of it a scan
-// Page, plotter and others: whoever shows alerts. ALERTS say with which scan one was taken.
+// Both of page, plotter and others: whoever shows alerts. ALERTS say with which scan one was taken.
 inline constexpr Channel kAlertAck{"ALERT_ACK", "alert_ack_t", "several", 10, 40, true, true};
+inline constexpr Channel kOrders{"ORDERS", "order_t", "several", 2, 40, true, true};
 inline constexpr Channel kHealth{"HEALTH", "health_t", "all", 10, 40, false, false};
 inline constexpr Channel kRunInfo{"RUN_INFO", "run_info_t", "recorder", 1, 10, false, false};
 // Of a simulation: stands in its own log, never on a boat's bus.
 inline constexpr Channel kSimTruth{"SIM_TRUTH", "sim_truth_t", "sim", 80, 160, false, false};
 
 inline constexpr std::array kChannels{kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw, kGnssFix, kAttitude, kPose,
-                                      kObstacles,    kTracks,    kAlerts,     kMap,       kAlertAck, kHealth, kRunInfo, kSimTruth};
+                                      kObstacles,    kTracks,    kAlerts,     kMap,       kAlertAck, kOrders, kHealth,  kRunInfo,  kSimTruth};
 
 /// Whether more than one process may send it: then its messages carry no numbers of one stream.
 constexpr bool HasSeveralPublishers(const Channel& channel) { return channel.publisher == "all" || channel.publisher == "several"; }

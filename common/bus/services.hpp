@@ -34,7 +34,7 @@ inline constexpr std::array kServices{
                "network",
                "checks the config",
                "tracks, land, what stands, alerts, poses, waiting scans",
-               {&kObstacles, &kSegments, &kLidarScan, &kPose, &kAlertAck}},
+               {&kObstacles, &kSegments, &kLidarScan, &kPose, &kAlertAck, &kOrders}},
     ServiceRow{"plotter",
                "targets and alerts for chart plotters, Signal K and NMEA 2000",
                10,

@@ -322,6 +322,19 @@ std::optional<Fault> FaultOf(const alert_ack_t& message) {
   return std::nullopt;
 }
 
+std::optional<Fault> FaultOf(const order_t& message) {
+  if (!UtimeFromWire(message.utime_us)) return kOrderTime;
+  if (message.source.size() > kMaxSourceBytes) return kOrderSource;
+  if (message.kind == order_t::KIND_SILENCE) return std::nullopt;
+  if (message.kind != order_t::KIND_SETTINGS || message.mode < order_t::MODE_OPEN_WATER || message.mode > order_t::MODE_HARBOUR) return kOrderKind;
+  const auto is_bad = [](float value) { return std::isinf(value); };
+  if (is_bad(message.guard_zone_range_m) || is_bad(message.guard_zone_from_rad) || is_bad(message.guard_zone_to_rad) || is_bad(message.cpa_limit_m) ||
+      message.guard_zone_range_m < 0.0F || message.cpa_limit_m < 0.0F) {
+    return kOrderNumber;
+  }
+  return std::nullopt;
+}
+
 bool AgreeAboutScan(const segments_t& one, const segments_t& other) {
   return one.end_utime_us == other.end_utime_us && one.num_parts == other.num_parts && one.num_rings == other.num_rings &&
          one.num_returns == other.num_returns;

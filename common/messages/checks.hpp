@@ -1,5 +1,5 @@
-// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS, ALERTS, MAP, and of ALERT_ACK. A service computes from what FaultOf
-// accepts; a tool, which shows also what a service refuses, asks IsWellFormed.
+// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS, ALERTS, MAP, and of ALERT_ACK and ORDERS. A service computes from what
+// FaultOf accepts; a tool, which shows also what a service refuses, asks IsWellFormed.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/map_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "lookout/order_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "lookout/tracks_t.hpp"
 
@@ -64,6 +65,12 @@ inline constexpr Fault kAckId = "acks_refused_id";          // 0: no alert has i
 inline constexpr Fault kAckSource = "acks_refused_source";  // more than 64 bytes
 inline constexpr std::array kAckFaults{kAckTime, kAckId, kAckSource};
 
+inline constexpr Fault kOrderTime = "orders_refused_time";      // does not exist
+inline constexpr Fault kOrderKind = "orders_refused_kind";      // a kind or mode that does not exist
+inline constexpr Fault kOrderNumber = "orders_refused_number";  // infinite, or a range or limit below 0
+inline constexpr Fault kOrderSource = "orders_refused_source";  // more than 64 bytes
+inline constexpr std::array kOrderFaults{kOrderTime, kOrderKind, kOrderNumber, kOrderSource};
+
 /// Bounds of a scan: 65 536 columns and 2^21 cells are more than any scan of a known lidar has (128 rings x 2 returns x 4096 columns make 2^20).
 inline constexpr int kMaxRings = 128;
 inline constexpr int kMaxReturns = 2;
@@ -79,6 +86,7 @@ std::optional<Fault> FaultOf(const lidar_scan_t& message, int max_message_bytes)
 std::optional<Fault> FaultOf(const segments_t& message, int max_message_bytes);
 std::optional<Fault> FaultOf(const obstacles_t& message, int max_message_bytes);
 std::optional<Fault> FaultOf(const alert_ack_t& message);
+std::optional<Fault> FaultOf(const order_t& message);
 
 /// The count of an array, as a message says it.
 template <typename T>

@@ -19,8 +19,8 @@ std::string BearingText(double bearing_rad) {
   return fmt::format(", {:.0f} deg to {}", std::abs(degrees), degrees < 0.0 ? "port" : "starboard");
 }
 
-std::string_view KindText(std::optional<TrackKind> kind) {
-  switch (kind.value_or(TrackKind::kUnknown)) {
+std::string_view KindText(TrackKind kind) {
+  switch (kind) {
     case TrackKind::kBuoy:
       return "buoy";
     case TrackKind::kBoat:
@@ -32,10 +32,21 @@ std::string_view KindText(std::optional<TrackKind> kind) {
   }
 }
 
-std::string WhoText(std::int64_t track_id, std::optional<TrackKind> kind) {
-  if (track_id == kLandTrack) return "land";
-  if (track_id <= kUnnamed) return "obstacle";
-  return fmt::format("{} {}", KindText(kind), track_id);
+// What is over, and why.
+std::string EndText(const Alert& alert) {
+  const auto who = NameOf(alert);
+  switch (alert.end) {
+    case AlertEnd::kPassed:
+      return who + " has passed";
+    case AlertEnd::kGone:
+      return who + " is gone: nothing is there any more";
+    case AlertEnd::kHidden:
+      return who + " was not seen again: it may be hidden";
+    case AlertEnd::kMerged:
+      return who + " is part of what is told already";
+    default:
+      return who + " is clear";
+  }
 }
 
 std::string_view ReasonText(Unseen why) {
@@ -84,17 +95,47 @@ std::string TextOf(std::span<const UnseenPart> parts, bool is_whole) {
   return text;
 }
 
-std::string TextOf(const Alert& alert, std::optional<TrackKind> kind) {
-  const auto who = WhoText(alert.track_id, kind);
-  switch (alert.cause) {
-    case AlertCause::kGuardZone:
-      return fmt::format("{} in the guard zone: {:.1f} m{}", who, alert.distance_m, BearingText(alert.bearing_rad));
-    case AlertCause::kClosestApproach:
-      return fmt::format("{}: closest approach {:.0f} m in {:.0f} s{}", who, alert.cpa_m, alert.tcpa_s, BearingText(alert.bearing_rad));
-    case AlertCause::kWatch:
-      break;
+std::string NameOf(const Alert& alert) {
+  if (alert.cause == AlertCause::kWatch) return {};
+  if (alert.thing == kLandTrack) return "land";
+  if (alert.thing <= kUnnamed) return "obstacle";
+  return fmt::format("{} {}", KindText(alert.kind), alert.thing);
+}
+
+std::string TextOf(const Alert& alert) {
+  if (alert.cause == AlertCause::kWatch) return "no look-out";
+  if (!alert.Holds()) return EndText(alert);
+  const auto who = NameOf(alert);
+  const auto where = BearingText(alert.bearing_rad);
+  if (alert.sight == AlertSight::kLost) return fmt::format("{} is not seen any more: last {:.1f} m from here{}", who, alert.distance_m, where);
+  std::string text;
+  if (alert.is_in_zone || !alert.comes_near) {
+    text = fmt::format("{} in the guard zone: {:.1f} m{}", who, alert.distance_m, where);
+    if (alert.comes_near && alert.tcpa_s > 0.0) text += fmt::format("; passes at {:.0f} m in {:.0f} s", alert.cpa_m, alert.tcpa_s);
+  } else if (alert.tcpa_s > 0.0) {
+    text = fmt::format("{}: closest approach {:.0f} m in {:.0f} s{}", who, alert.cpa_m, alert.tcpa_s, where);
+  } else {
+    text = fmt::format("{} is near: {:.1f} m{}", who, alert.distance_m, where);
   }
-  return "no look-out";
+  if (alert.sight == AlertSight::kJustSeen) text += " (just seen)";
+  return text;
+}
+
+std::string SummaryOf(std::span<const Alert> alerts) {
+  constexpr int kFew = 3;
+  int count = 0;
+  double farthest_m = 0.0;
+  const Alert* nearest = nullptr;
+  for (const auto& alert : alerts) {
+    if (!alert.Holds() || alert.cause == AlertCause::kWatch) continue;
+    ++count;
+    if (std::isnan(alert.distance_m)) continue;
+    farthest_m = std::max(farthest_m, alert.distance_m);
+    if (nearest == nullptr || alert.distance_m < nearest->distance_m) nearest = &alert;
+  }
+  if (count <= kFew || nearest == nullptr) return {};
+  return fmt::format("{} things within {:.0f} m, the nearest {}, {:.0f} m{}", count, std::ceil(farthest_m), NameOf(*nearest), nearest->distance_m,
+                     BearingText(nearest->bearing_rad));
 }
 
 }  // namespace lookout::tracker

@@ -1,7 +1,6 @@
 // An alert in words, for people.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 
@@ -11,9 +10,15 @@
 
 namespace lookout::tracker {
 
-/// "boat 17: closest approach 3 m in 21 s, 40 deg to starboard", "land in the guard zone: 7.3 m, 12 deg to port"
-/// @param kind  of its track; nullopt: it is of none, or that is gone
-std::string TextOf(const Alert& alert, std::optional<TrackKind> kind);
+/// Short: "boat 17", "land", "obstacle"; nothing where nobody looks.
+std::string NameOf(const Alert& alert);
+
+/// "boat 17: closest approach 3 m in 21 s, 40 deg to starboard", "boat 17 in the guard zone: 6.2 m, 20 deg to starboard; passes at 1 m in 4 s",
+/// "boat 17 is not seen any more: last 6.2 m from here, 20 deg to port", "boat 17 has passed"
+std::string TextOf(const Alert& alert);
+
+/// Of more than three that hold: "5 things within 20 m, the nearest boat 7, 4 m, 12 deg to port"; else nothing.
+std::string SummaryOf(std::span<const Alert> alerts);
 
 /// "no look-out in part of the guard zone: 270 to 90 deg (the lidar does not fire there)", "no look-out in the whole guard zone: all round (...)".
 /// Three parts are named, and how many more there are.

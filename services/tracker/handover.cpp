@@ -41,7 +41,7 @@ std::optional<Legacy> ToLegacy(const alerts_t& alerts, const tracks_t& tracks) {
     alert.cause = static_cast<AlertCause>(message.cause);
     alert.level = static_cast<AlertLevel>(message.level);
     alert.state = AlertState::kAcknowledged;
-    alert.track_id = message.track_id;
+    alert.thing = alert.nearest_track = message.track_id;
   }
   for (const auto& message : tracks.tracks) {
     Track& track = legacy.tracks.emplace_back();

@@ -1,4 +1,4 @@
-// The tracker process: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE and ALERT_ACK in, TRACKS, ALERTS and MAP out.
+// The tracker process: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE, ALERT_ACK and ORDERS in, TRACKS, ALERTS and MAP out.
 #include <chrono>
 
 #include "common/runtime/service_main.hpp"

@@ -73,6 +73,15 @@ ZoneSightParams ToZoneSight(const GuardZoneParams& zone, const config::BoatFacts
   return params;
 }
 
+LookOutParams ToLookOut(const config::Tracker& message, const GuardZoneParams& zone) {
+  LookOutParams params;
+  params.alerts = {message.raise_probability(), message.clear_probability(), message.clear_s()};
+  params.ability = {message.reaction_s(), message.deceleration_mps2(), DegToRad(message.turn_rate_degps())};
+  params.limits.guard_zone = zone;
+  params.limits.cpa_limit_m = message.cpa_limit_m();
+  return params;
+}
+
 }  // namespace
 
 Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file) {
@@ -102,14 +111,15 @@ Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file) 
 
   Params params;
   params.map = std::move(map);
+  auto& zone = params.look_out.limits.guard_zone;
   if (message->has_guard_zone()) {
-    params.guard_zone = ToGuardZone(message->guard_zone());
-    if (IsInsideBox(params.guard_zone, boat->own_vessel_box_m)) {
-      faults.Add(config::FaultLine(file, "guard_zone.range_m", InsideHullText(params.guard_zone, boat->own_vessel_box_m)));
+    zone = ToGuardZone(message->guard_zone());
+    if (IsInsideBox(zone, boat->own_vessel_box_m)) {
+      faults.Add(config::FaultLine(file, "guard_zone.range_m", InsideHullText(zone, boat->own_vessel_box_m)));
       faults.ThrowIfAny();
     }
   }
-  params.zone_sight = ToZoneSight(params.guard_zone, *boat, *segmenter);
+  params.zone_sight = ToZoneSight(zone, *boat, *segmenter);
   params.zone_sight.expected_elevation_rad = ExpectedElevations(config_folder);
   params.tracker.T_vessel_lidar = boat->T_vessel_lidar;
   params.tracker.reference_point_above_water_m = boat->reference_point_above_water_m;
@@ -119,10 +129,7 @@ Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file) 
   params.tracker.moving_probability = message->moving_probability();
   params.tracker.confirm_probability = message->confirm_probability();
   params.tracker.end_probability = message->end_probability();
-  params.alerts.raise_probability = message->raise_probability();
-  params.alerts.clear_probability = message->clear_probability();
-  params.alerts.clear_s = message->clear_s();
-  params.alerts.warning_tcpa_s = message->warning_tcpa_s();
+  params.look_out = ToLookOut(*message, zone);
   params.wait_timeout = std::chrono::round<std::chrono::microseconds>(std::chrono::duration<double>(message->wait_timeout_s()));
   return params;
 }

@@ -5,8 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "common/core/guard_sector.hpp"
-#include "services/tracker/core/alerts.hpp"
+#include "services/tracker/core/look_out.hpp"
 #include "services/tracker/core/own_map.hpp"
 #include "services/tracker/core/tracker.hpp"
 #include "services/tracker/core/zone_sight.hpp"
@@ -15,8 +14,7 @@ namespace lookout::tracker {
 
 struct Params {
   TrackerParams tracker;
-  AlertParams alerts;
-  GuardZoneParams guard_zone = {};
+  LookOutParams look_out = {};
   ZoneSightParams zone_sight = {};
   std::chrono::microseconds wait_timeout{500'000};  // live only
   std::shared_ptr<const OwnMap> map = {};           // what the file of `map` holds; nullptr: none is named, or it was not to be read

@@ -15,17 +15,9 @@ namespace {
 
 // Acknowledgements that wait for a scan: people do not press buttons more often.
 constexpr std::size_t kMaxAcknowledgements = 100;
+constexpr std::size_t kMaxOrders = 20;
 // Room in ALERTS for the words on the guard zone.
 constexpr int kZoneTextBytes = 4096;
-
-// Without an own pose nobody knows how near anything will come; what is in the guard zone shows all the same.
-std::vector<Danger> DangersOf(const Params& params, const GatheredScan& scan, const Picture& picture, bool is_own_still) {
-  auto dangers = GuardZoneDangers(params.guard_zone, picture, scan.outlines, scan.input.own);
-  if (scan.input.own) {
-    std::ranges::copy(ClosestApproachDangers(params.tracker.encounter.limit_m, picture, is_own_still), std::back_inserter(dangers));
-  }
-  return dangers;
-}
 
 }  // namespace
 
@@ -36,6 +28,7 @@ Service::Service(bus::Bus& bus, const Params& params, Given given)
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
   bus::Subscribe<obstacles_t>(bus_, bus::kObstacles, [this](const obstacles_t& message) { OnObstacles(message); });
   bus::Subscribe<alert_ack_t>(bus_, bus::kAlertAck, [this](const alert_ack_t& message) { OnAcknowledgement(message); });
+  bus::Subscribe<order_t>(bus_, bus::kOrders, [this](const order_t& message) { OnOrder(message); });
 }
 
 void Service::OnObstacles(const obstacles_t& message) {
@@ -127,6 +120,16 @@ void Service::OnAcknowledgement(const alert_ack_t& message) {
   }
 }
 
+void Service::OnOrder(const order_t& message) {
+  if (const auto fault = messages::FaultOf(message)) return orders_refused_.Add(*fault);
+  if (given_.script) return;
+  if (orders_.size() >= kMaxOrders) {
+    ++counts_["orders_dropped"];
+  } else {
+    orders_.push_back(ToOrder(message));
+  }
+}
+
 void Service::AdvanceTo(Utime host_time) {
   now_ = host_time;
   obstacles_watch_.AdvanceTo(host_time);
@@ -161,27 +164,29 @@ void Service::Use(const GatheredScan& scan) {
     Begin(scan.key());
     if (given_.before) memory_->kept.Keep(given_.before->time, given_.before->datum, given_.before->alerts, given_.before->tracks);
   } else if (scan.is_anew && memory_->picture != nullptr) {
-    memory_->kept.Keep(label_->end_time, label_->datum, memory_->alerts.alerts(), memory_->picture->tracks);
+    memory_->kept.Keep(label_->end_time, label_->datum, memory_->look_out.alerts(), memory_->picture->tracks);
     memory_->tracker.Reset();
+    memory_->look_out.ForgetTracks();
   }
-  if (label_ && (scan.is_anew || !scan.input.datum.IsSameAs(label_->datum))) memory_->alerts.ForgetMap();
+  auto& look_out = memory_->look_out;
+  if (label_ && (scan.is_anew || !scan.input.datum.IsSameAs(label_->datum))) look_out.ForgetMap();
   const auto& input = scan.input;
   const bool is_whole = input.flags == 0;
   watch_.NoteScan(input.time, is_whole);
   is_placed_ = input.own.has_value();
 
+  const auto orders = TakeOrders(input);
+  memory_->tracker.SetEncounter({look_out.Begin(input.own).cpa_limit_m, params_.tracker.encounter.look_ahead_s});
   const Picture& picture = memory_->tracker.Update(input);
-  for (const auto& [from, to] : picture.merged) memory_->alerts.Rename(from, to, input.end_time);
+  look_out.Rename(picture, input.end_time);
   const auto acknowledged = TakeAcknowledgements(input, picture);
-  const bool is_own_still = memory_->still.Update(input.end_time, input.own ? input.own->velocity_map_mps : Eigen::Vector2d::Constant(kNan));
-  auto dangers = DangersOf(params_, scan, picture, is_own_still);
-  LookAtZone(input, dangers);
-  const auto& alerts = memory_->alerts.Update(input.end_time, is_whole, dangers);
+  const auto& alerts = look_out.Update(input.end_time, is_whole, picture, scan.outlines, input.own, LookAtZone(input));
 
   const double own_up_m = input.own ? input.own->position_map_m.z() : label_ ? label_->own_up_m : 0.0;
   label_ = {scan.key(), memory_->begin, input.end_time, scan.raw_seq, input.flags, input.datum, own_up_m};
   for (const auto& message : ToMessages(*label_, picture, bus::kMaxMessageBytes)) bus::Publish(bus_, bus::kTracks, message);
-  auto message = ToMessage(*label_, alerts, acknowledged, picture, bus::kMaxMessageBytes - kZoneTextBytes);
+  auto message = ToMessage(*label_, {alerts, acknowledged, orders, look_out.sounding(), look_out.silenced_until(), look_out.limits()}, picture,
+                           bus::kMaxMessageBytes - kZoneTextBytes);
   TellOfZone(message);
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
@@ -232,12 +237,12 @@ std::vector<Acknowledgement> Service::TakeAcknowledgements(const ScanInput& inpu
     const auto found = given_.script->acknowledged.find({input.time, input.seq});
     if (found != given_.script->acknowledged.end()) acknowledgements_.assign(found->second.begin(), found->second.end());
   } else {
-    const auto kept = memory_->kept.Take(input.end_time, input.datum, memory_->alerts.alerts(), picture.tracks);
+    const auto kept = memory_->kept.Take(input.end_time, input.datum, memory_->look_out.alerts(), picture.tracks);
     acknowledgements_.insert(acknowledgements_.end(), kept.begin(), kept.end());
   }
   std::vector<Acknowledgement> taken;
   for (const auto& acknowledgement : std::exchange(acknowledgements_, {})) {
-    if (memory_->alerts.Acknowledge(acknowledgement, input.end_time)) {
+    if (memory_->look_out.Acknowledge(acknowledgement, input.end_time)) {
       ++counts_["acks_taken"];
       taken.push_back(acknowledgement);
     } else {
@@ -247,14 +252,24 @@ std::vector<Acknowledgement> Service::TakeAcknowledgements(const ScanInput& inpu
   return taken;
 }
 
+std::vector<Order> Service::TakeOrders(const ScanInput& input) {
+  if (given_.script) {
+    const auto found = given_.script->orders.find({input.time, input.seq});
+    if (found != given_.script->orders.end()) orders_ = found->second;
+  }
+  auto taken = std::exchange(orders_, {});
+  for (const auto& order : taken) memory_->look_out.Take(order, input.end_time);
+  counts_["orders_taken"] += static_cast<std::int64_t>(taken.size());
+  return taken;
+}
+
 // What of the guard zone nobody looks into is an alert like another: decided by the scans, so that a replay gives the same.
-void Service::LookAtZone(const ScanInput& input, std::vector<Danger>& dangers) {
+std::optional<Danger> Service::LookAtZone(const ScanInput& input) {
   auto& zone_sight = memory_->zone_sight;
   if (input.sweep) zone_sight.Update(input.end_time, *input.sweep);
-  if (const auto danger = zone_sight.danger()) {
-    dangers.push_back(*danger);
-    memory_->zone_text = TextOf(zone_sight.parts(), zone_sight.is_whole());
-  }
+  const auto danger = zone_sight.danger();
+  if (danger) memory_->zone_text = TextOf(zone_sight.parts(), zone_sight.is_whole());
+  return danger;
 }
 
 // Its words, which no alert holds.
@@ -280,13 +295,16 @@ void Service::Leave(const alerts_t& message, const Picture& picture) const {
 // With the number of the last scan, and the alerts as they were.
 void Service::SendWatch() {
   if (!label_ || !memory_) return;
-  auto alerts = memory_->alerts.alerts();
+  auto alerts = memory_->look_out.alerts();
   std::erase_if(alerts, [](const Alert& one) { return one.state == AlertState::kCleared; });  // that was told once
-  auto message = ToMessage(*label_, alerts, {}, memory_->picture != nullptr ? *memory_->picture : Picture{}, bus::kMaxMessageBytes / 2);
+  const auto& look_out = memory_->look_out;
+  auto message = ToMessage(*label_, {alerts, {}, {}, look_out.sounding(), look_out.silenced_until(), look_out.limits()},
+                           memory_->picture != nullptr ? *memory_->picture : Picture{}, bus::kMaxMessageBytes / 2);
   TellOfZone(message);
   auto alert = ToMessage(*watch_.alert(), std::nullopt);
   alert.text = alert.state == alert_t::STATE_CLEARED ? "look-out again" : "no look-out: " + watch_.Complaint();
   message.is_watch = true;
+  if (alert.state == alert_t::STATE_ACTIVE) message.sounding_alert_id = alert.id;
   message.alerts.insert(message.alerts.begin(), std::move(alert));
   message.num_alerts = messages::CountOf(message.alerts);
   bus::Publish(bus_, bus::kAlerts, message);
@@ -313,6 +331,7 @@ HealthReport Service::Report() const {
   labels_refused_.AppendTo(report.counters);
   poses_refused_.AppendTo(report.counters);
   acknowledgements_refused_.AppendTo(report.counters);
+  orders_refused_.AppendTo(report.counters);
 
   if (const auto complaint = watch_.Complaint(); !complaint.empty()) report.Degrade("no look-out: " + complaint);
   if (memory_ && !memory_->zone_sight.parts().empty()) report.Degrade(memory_->zone_text);

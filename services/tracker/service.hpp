@@ -1,4 +1,4 @@
-// The tracker process without its clock: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE and ALERT_ACK in, TRACKS, ALERTS and MAP out.
+// The tracker process without its clock: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE, ALERT_ACK and ORDERS in, TRACKS, ALERTS and MAP out.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@
 #include "common/core/utime.hpp"
 #include "common/messages/part_assembler.hpp"
 #include "common/messages/pose_message.hpp"
-#include "services/tracker/core/dangers.hpp"
 #include "services/tracker/core/kept_acknowledgements.hpp"
+#include "services/tracker/core/look_out.hpp"
 #include "services/tracker/core/script.hpp"
 #include "services/tracker/core/zone_sight.hpp"
 #include "services/tracker/handover.hpp"
@@ -61,12 +61,11 @@ class Service {
   // Tracks and alerts, from the begin of a process.
   struct Memory {
     Memory(const Params& params, GivenMap given)
-        : tracker(params.tracker), alerts(params.alerts), zone_sight(params.zone_sight), map(std::move(given)) {}
+        : tracker(params.tracker), look_out(params.look_out), zone_sight(params.zone_sight), map(std::move(given)) {}
     Tracker tracker;
-    Alerts alerts;
+    LookOut look_out;
     ZoneSight zone_sight;
     std::string zone_text;  // of the last part of the guard zone that nobody looked into
-    StillWatch still;
     KeptAcknowledgements kept;
     MapTelling map;
     const Picture* picture = nullptr;  // of the last scan: the tracker's own
@@ -78,6 +77,7 @@ class Service {
   void OnLabels(const segments_t& message);
   void OnPose(const pose_t& message);
   void OnAcknowledgement(const alert_ack_t& message);
+  void OnOrder(const order_t& message);
 
   void AddObstacles(std::span<const obstacles_t> parts);
   void AddBeams(std::span<const lidar_scan_t> parts, bool is_whole);
@@ -88,14 +88,16 @@ class Service {
   bool FollowScript(const ScanKey& key);
   void Begin(const ScanKey& begin);
   std::vector<Acknowledgement> TakeAcknowledgements(const ScanInput& input, const Picture& picture);
-  void LookAtZone(const ScanInput& input, std::vector<Danger>& dangers);
+  std::vector<Order> TakeOrders(const ScanInput& input);
+  std::optional<Danger> LookAtZone(const ScanInput& input);
   void TellOfZone(alerts_t& message) const;
   void Leave(const alerts_t& message, const Picture& picture) const;
   void SendWatch();
 
-  static constexpr auto kCountNames = std::to_array<std::string_view>(
-      {"obstacles_not_placed", "obstacles_without_covariance", "obstacles_over_limit", "obstacles_inconsistent", "beams_inconsistent",
-       "parts_duplicate", "parts_inconsistent", "scans_not_of_the_live_run", "acks_taken", "acks_of_no_alert", "acks_dropped", "alerts_untold"});
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"obstacles_not_placed", "obstacles_without_covariance", "obstacles_over_limit", "obstacles_inconsistent",
+                                       "beams_inconsistent", "parts_duplicate", "parts_inconsistent", "scans_not_of_the_live_run", "acks_taken",
+                                       "acks_of_no_alert", "acks_dropped", "orders_taken", "orders_dropped", "alerts_untold"});
 
   bus::Bus& bus_;
   Params params_;
@@ -107,6 +109,7 @@ class Service {
   std::unique_ptr<Memory> memory_;  // nullptr until the first scan
   std::size_t next_stretch_ = 0;    // of the script
   std::deque<Acknowledgement> acknowledgements_;
+  std::vector<Order> orders_;
   std::optional<std::int64_t> pose_seq_;
   std::optional<ScanLabel> label_;  // of the last scan
   bool is_placed_ = true;           // in the last scan
@@ -117,6 +120,7 @@ class Service {
   Counts<messages::kSegmentsFaults> labels_refused_;
   Counts<messages::kPoseFaults> poses_refused_;
   Counts<messages::kAckFaults> acknowledgements_refused_;
+  Counts<messages::kOrderFaults> orders_refused_;
   // Host time, live only.
   Watch watch_;
   bool reported_failing_ = false;

@@ -46,6 +46,20 @@ static_assert(static_cast<int>(AlertState::kAcknowledged) == alert_t::STATE_ACKN
 static_assert(static_cast<int>(AlertState::kRectified) == alert_t::STATE_RECTIFIED);
 static_assert(static_cast<int>(AlertState::kCleared) == alert_t::STATE_CLEARED);
 
+static_assert(static_cast<int>(AlertSight::kSeen) == alert_t::SIGHT_SEEN);
+static_assert(static_cast<int>(AlertSight::kJustSeen) == alert_t::SIGHT_JUST_SEEN);
+static_assert(static_cast<int>(AlertSight::kLost) == alert_t::SIGHT_LOST);
+static_assert(static_cast<int>(AlertEnd::kNone) == alert_t::END_NONE);
+static_assert(static_cast<int>(AlertEnd::kClear) == alert_t::END_CLEAR);
+static_assert(static_cast<int>(AlertEnd::kPassed) == alert_t::END_PASSED);
+static_assert(static_cast<int>(AlertEnd::kGone) == alert_t::END_GONE);
+static_assert(static_cast<int>(AlertEnd::kHidden) == alert_t::END_HIDDEN);
+static_assert(static_cast<int>(AlertEnd::kMerged) == alert_t::END_MERGED);
+static_assert(static_cast<int>(OrderKind::kSilence) == order_t::KIND_SILENCE);
+static_assert(static_cast<int>(OrderKind::kSettings) == order_t::KIND_SETTINGS);
+static_assert(static_cast<int>(Mode::kOpenWater) == order_t::MODE_OPEN_WATER);
+static_assert(static_cast<int>(Mode::kHarbour) == order_t::MODE_HARBOUR);
+
 // Where the method states no probability (the paper's).
 constexpr double kThingProbabilityOfSure = 0.9;
 constexpr double kThingProbabilityOfTentative = 0.1;
@@ -363,14 +377,16 @@ std::vector<tracks_t> ToMessages(const ScanLabel& scan, const Picture& picture, 
   return parts;
 }
 
-alert_t ToMessage(const Alert& alert, std::optional<TrackKind> kind) {
+alert_t ToMessage(const Alert& alert, const std::optional<LocalFrame>& map) {
   alert_t message{};
   message.id = alert.id;
   message.cause = static_cast<std::int32_t>(alert.cause);
+  message.is_in_zone = alert.is_in_zone;
+  message.comes_near = alert.comes_near;
   message.level = static_cast<std::int32_t>(alert.level);
   message.state = static_cast<std::int32_t>(alert.state);
-  const bool is_of_track = alert.track_id != kUnnamed && alert.track_id > kFirstUnseenId;
-  message.track_id = is_of_track ? alert.track_id : kLandTrack;
+  message.track_id = alert.nearest_track;
+  message.name = NameOf(alert);
   message.raised_utime_us = ToUtimeUs(alert.raised);
   message.changed_utime_us = ToUtimeUs(alert.changed);
   message.distance_m = ToFloat(alert.distance_m);
@@ -378,20 +394,64 @@ alert_t ToMessage(const Alert& alert, std::optional<TrackKind> kind) {
   message.cpa_m = ToFloat(alert.cpa_m);
   message.tcpa_s = ToFloat(alert.tcpa_s);
   message.cpa_probability = ToFloat(alert.cpa_probability);
-  message.text = TextOf(alert, kind);
+  message.time_left_s = ToFloat(alert.time_left_s);
+  message.latitude_deg = message.longitude_deg = Canonical(kNan);
+  if (map && !alert.place_map_m.hasNaN()) {
+    const auto place = map->Reverse({alert.place_map_m.x(), alert.place_map_m.y(), 0.0});
+    message.latitude_deg = place.latitude_deg;
+    message.longitude_deg = place.longitude_deg;
+  }
+  message.sight = static_cast<std::int32_t>(alert.sight);
+  message.seen_utime_us = ToUtimeUs(alert.seen);
+  message.end = static_cast<std::int32_t>(alert.end);
+  message.text = TextOf(alert);
   return message;
 }
 
-alerts_t ToMessage(const ScanLabel& scan, const std::vector<Alert>& alerts, const std::vector<Acknowledgement>& acknowledged, const Picture& picture,
-                   int max_message_bytes) {
+Order ToOrder(const order_t& message) {
+  Order order{Utime(microseconds(message.utime_us)), message.seq, message.source, static_cast<OrderKind>(message.kind), {}};
+  if (order.kind != OrderKind::kSettings) return order;
+  order.settings = {static_cast<Mode>(message.mode), message.guard_zone_range_m, message.guard_zone_from_rad, message.guard_zone_to_rad,
+                    message.cpa_limit_m};
+  return order;
+}
+
+order_t ToMessage(const Order& order) {
+  order_t message{};
+  message.utime_us = ToUtimeUs(order.time);
+  message.seq = order.seq;
+  message.source = order.source;
+  message.kind = static_cast<std::int32_t>(order.kind);
+  message.mode = static_cast<std::int32_t>(order.settings.mode);
+  message.guard_zone_range_m = ToFloat(order.settings.guard_zone_range_m);
+  message.guard_zone_from_rad = ToFloat(order.settings.guard_zone_from_rad);
+  message.guard_zone_to_rad = ToFloat(order.settings.guard_zone_to_rad);
+  message.cpa_limit_m = ToFloat(order.settings.cpa_limit_m);
+  return message;
+}
+
+alerts_t ToMessage(const ScanLabel& scan, const AlertsTold& told, const Picture& picture, int max_message_bytes) {
   alerts_t message{};
   CopyLabel(scan, message);
-  for (const auto& acknowledgement : acknowledged) message.acknowledged.push_back(ToMessage(acknowledgement));
+  message.summary = SummaryOf(told.alerts);
+  message.sounding_alert_id = told.sounding_alert_id;
+  message.silenced_until_utime_us = told.silenced_until ? ToUtimeUs(*told.silenced_until) : 0;
+  message.mode = static_cast<std::int32_t>(told.limits.mode);
+  message.guard_zone_range_m = ToFloat(told.limits.guard_zone.range_m);
+  message.guard_zone_from_rad = ToFloat(told.limits.guard_zone.bearing.start_rad);
+  message.guard_zone_to_rad = ToFloat(told.limits.guard_zone.bearing.start_rad + told.limits.guard_zone.bearing.width_rad);
+  message.cpa_limit_m = ToFloat(told.limits.cpa_limit_m);
+  for (const auto& acknowledgement : told.acknowledged) message.acknowledged.push_back(ToMessage(acknowledgement));
   message.num_acknowledged = messages::CountOf(message.acknowledged);
+  for (const auto& order : told.orders) message.orders.push_back(ToMessage(order));
+  message.num_orders = messages::CountOf(message.orders);
+  const bool has_map = !std::isnan(scan.datum.latitude_deg);
+  const auto map = has_map ? std::optional(scan.datum.Map()) : std::nullopt;
   int num_bytes = message.getEncodedSize();
-  for (const auto& alert : alerts) {
-    const auto track = std::ranges::find(picture.tracks, alert.track_id, &Track::id);
-    auto part = ToMessage(alert, track == picture.tracks.end() ? std::nullopt : std::optional(track->kind));
+  for (const auto& alert : told.alerts) {
+    auto part = ToMessage(alert, map);
+    const auto track = std::ranges::find(picture.tracks, alert.nearest_track, &Track::id);
+    if (track == picture.tracks.end() || track->status == TrackStatus::kLost) part.track_id = kLandTrack;
     num_bytes += part._getEncodedSizeNoHash();
     if (num_bytes > max_message_bytes) break;
     message.alerts.push_back(std::move(part));

@@ -11,10 +11,13 @@
 #include "lookout/alerts_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "lookout/order_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "services/tracker/core/alerts.hpp"
 #include "services/tracker/core/gatherer.hpp"
+#include "services/tracker/core/limits.hpp"
+#include "services/tracker/core/order.hpp"
 #include "services/tracker/core/tracker.hpp"
 
 namespace lookout::tracker {
@@ -60,13 +63,25 @@ struct ScanLabel {
 /// TRACKS of one scan: one message, or more where they do not fit.
 std::vector<tracks_t> ToMessages(const ScanLabel& scan, const Picture& picture, int max_message_bytes);
 
+Order ToOrder(const order_t& message);
+order_t ToMessage(const Order& order);
+
+/// What ALERTS of one scan say.
+struct AlertsTold {
+  std::span<const Alert> alerts;  // the gravest first
+  std::vector<Acknowledgement> acknowledged = {};
+  std::vector<Order> orders = {};
+  std::int64_t sounding_alert_id = 0;
+  std::optional<Utime> silenced_until = std::nullopt;
+  Limits limits = {};
+};
+
 /// ALERTS of one scan. Those that do not fit are left out, the least grave first.
-/// @param picture  says what kind of thing a track is
-alerts_t ToMessage(const ScanLabel& scan, const std::vector<Alert>& alerts, const std::vector<Acknowledgement>& acknowledged, const Picture& picture,
-                   int max_message_bytes);
+/// @param picture  says which tracks there are
+alerts_t ToMessage(const ScanLabel& scan, const AlertsTold& told, const Picture& picture, int max_message_bytes);
 
 /// An alert with its text.
-/// @param kind  of its track; nullopt: it is of none, or that is gone
-alert_t ToMessage(const Alert& alert, std::optional<TrackKind> kind);
+/// @param map  where its place is; nullopt: not known
+alert_t ToMessage(const Alert& alert, const std::optional<LocalFrame>& map);
 
 }  // namespace lookout::tracker

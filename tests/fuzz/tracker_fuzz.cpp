@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   namespace test = tracker::test;
   bus::MemoryBus bus;
   auto params = test::MakeParams();
-  params.guard_zone = {.range_m = 10.0};
+  params.look_out.limits.guard_zone = {.range_m = 10.0};
   params.zone_sight.zone = params.guard_zone;
   params.zone_sight.own_vessel_box_m = {Eigen::Vector3d(-1.0, -0.5, -1.0), Eigen::Vector3d(1.0, 0.5, 2.0)};
   tracker::Service service(bus, params);
@@ -83,6 +83,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                               test::MakeObstacle(2, test::kStartUs + offset_us + 1000, {-20.0 + scan, 25.0}), land}));
   }
   add(bus::kAlertAck, alert_ack_t{});
+  order_t order{};
+  order.kind = order_t::KIND_SETTINGS;
+  order.mode = order_t::MODE_HARBOUR;
+  add(bus::kOrders, order);
   for (std::size_t i = 0; i + kPatchBytes <= size; i += kPatchBytes) {
     const std::size_t which = data[i + 3] % messages.size();
     auto& message = messages[which].second;

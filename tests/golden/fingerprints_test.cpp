@@ -100,8 +100,8 @@ TEST(WireTypes, AreOnAChannelOrAPartOfOneThatIs) {
     const bool is_part = std::ranges::any_of(
         files, [&type](const std::string& other) { return (";" + MembersOf(other)).find(";" + type + " ") != std::string::npos; });
     const auto channel = std::ranges::find(bus::kChannels, type, &bus::Channel::type);
-    // An acknowledgement is both: ALERTS repeat those that were taken.
-    const bool may_be_both = type == "alert_ack_t";
+    // Acknowledgements and orders are both: ALERTS repeat those that were taken.
+    const bool may_be_both = type == "alert_ack_t" || type == "order_t";
     EXPECT_EQ(channel != bus::kChannels.end(), !is_part || may_be_both)
         << type << ": on a channel, or a part of another type, not both and not neither";
     if (channel != bus::kChannels.end()) {

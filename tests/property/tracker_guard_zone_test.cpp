@@ -76,7 +76,7 @@ Run Simulate(const std::string& scene_text, int seed, double seconds, const std:
       const auto message = bus::Decode<obstacles_t>(bytes).value();
       tracker::LeftOut left_out;
       const auto obstacles = tracker::ToObstacles({&message, 1}, left_out);
-      const bool is_in_zone = !GuardZoneDangers(params.guard_zone, {}, obstacles.value().outlines, std::nullopt).empty();
+      const bool is_in_zone = !GuardZoneDangers(params.look_out.limits.guard_zone, {}, obstacles.value().outlines, std::nullopt).empty();
       if (message.part_index == 0) {
         ++run.num_scans;
         window.push_back(false);
@@ -93,14 +93,14 @@ Run Simulate(const std::string& scene_text, int seed, double seconds, const std:
       const bool has_begun = message.seq >= message.begin_seq + 2;  // it lacks the first scans of the log
       const bool is_three_of_five = has_begun && window.back() && std::ranges::count(window, true) >= 3;
       const bool is_told = std::ranges::any_of(message.alerts, [](const alert_t& alert) {
-        return alert.cause == alert_t::CAUSE_GUARD_ZONE && alert.state <= alert_t::STATE_ACKNOWLEDGED;
+        return alert.is_in_zone != 0 && alert.state <= alert_t::STATE_ACKNOWLEDGED;
       });
       run.num_risen += is_told && !was_told ? 1 : 0;
       was_told = is_told;
       run.num_three_of_five += is_three_of_five ? 1 : 0;
       run.num_silent += is_three_of_five && !is_told ? 1 : 0;
       for (const auto& alert : message.alerts) {
-        if (alert.cause != alert_t::CAUSE_GUARD_ZONE) continue;
+        if (alert.is_in_zone == 0) continue;
         run.alerts.insert(alert.id);
         if (!run.raised_us) run.raised_us = message.end_utime_us;
       }
@@ -177,7 +177,7 @@ object { kind: SHORE name: "shore" land { mean_radius_m: 20 roughness_m: 0.3 fro
 // A quay to port was acknowledged, and the boat drove at the wall ahead: 19 s in the zone, down to 2.7 m, and nothing rang.
 TEST(GuardZoneOfTheChain, RingsAheadOfAShoreThatWasAcknowledgedAlongside) {
   auto params = tracker::LoadParams(kDemo);
-  params.guard_zone = {.range_m = 14.0, .bearing = {}};
+  params.look_out.limits.guard_zone = {.range_m = 14.0, .bearing = {}};
   bus::MemoryBus bus;
   tracker::Service service(bus, params);
   std::int64_t num_acknowledged = 0;
@@ -190,7 +190,7 @@ TEST(GuardZoneOfTheChain, RingsAheadOfAShoreThatWasAcknowledgedAlongside) {
     bool is_ringing = false;
     double nearest_m = 100.0;
     for (const auto& alert : message.alerts) {
-      if (alert.cause != alert_t::CAUSE_GUARD_ZONE || alert.state > alert_t::STATE_ACKNOWLEDGED) continue;
+      if (alert.is_in_zone == 0 || alert.state > alert_t::STATE_ACKNOWLEDGED) continue;
       nearest_m = std::min(nearest_m, static_cast<double>(alert.distance_m));
       is_ringing = is_ringing || alert.state == alert_t::STATE_ACTIVE;
       if (!is_early || alert.state != alert_t::STATE_ACTIVE) continue;

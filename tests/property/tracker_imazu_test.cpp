@@ -53,7 +53,7 @@ constexpr double kScanS = 0.1;
 constexpr double kSd = 0.1;  // of position, m, and of velocity, m/s
 // Small craft: a boat's length of room, and the time in which it can be stopped or turned away twice over.
 constexpr EncounterParams kLimits{.limit_m = 5.0, .look_ahead_s = 30.0};
-constexpr AlertParams kAlerting{.warning_tcpa_s = 15.0};
+constexpr AlertParams kAlerting{};
 
 std::vector<Eigen::Vector2d> Boat(double length_m, double width_m, const Eigen::Vector2d& center_m, double course_rad) {
   const Eigen::Vector2d ahead(std::sin(course_rad), std::cos(course_rad));
@@ -123,9 +123,9 @@ std::vector<Outcome> Simulate(const Courses& courses, std::uint64_t seed) {
       picture.tracks.push_back(track);
     }
     const auto time = start + std::chrono::milliseconds(100 * scan);
-    for (const auto& alert : alerts.Update(time, true, ClosestApproachDangers(kLimits.limit_m, picture, false))) {
+    for (const auto& alert : alerts.Update(time, true, ClosestApproachDangers({kLimits.limit_m}, picture, own, false))) {
       if (!alert.Holds()) continue;
-      auto& outcome = outcomes[static_cast<std::size_t>(alert.track_id - 1)];
+      auto& outcome = outcomes[static_cast<std::size_t>(alert.thing - 1)];
       if (!outcome.raised_s) outcome.raised_s = time_s;
       if (alert.level == AlertLevel::kWarning && !outcome.warning_s) outcome.warning_s = time_s;
       outcome.last_held_s = time_s;

@@ -133,7 +133,10 @@ void Append(const alerts_t& message, std::string& text) {
   for (const auto& alert : message.alerts) {
     AppendRow(text, message.end_utime_us, alert.id, words::WordOf(words::kAlertCause, alert.cause), words::WordOf(words::kAlertLevel, alert.level),
               words::WordOf(words::kAlertState, alert.state), alert.track_id, alert.raised_utime_us, alert.changed_utime_us, Metres(alert.distance_m),
-              Direction{alert.bearing_rad}, Metres(alert.cpa_m), Fixed{alert.tcpa_s, 2}, Share(alert.cpa_probability), alert.text);
+              Direction{alert.bearing_rad}, Metres(alert.cpa_m), Fixed{alert.tcpa_s, 2}, Share(alert.cpa_probability), alert.text, alert.name,
+              static_cast<int>(alert.is_in_zone), static_cast<int>(alert.comes_near), Fixed{alert.time_left_s, 2},
+              GeodeticDegrees(alert.latitude_deg), GeodeticDegrees(alert.longitude_deg), words::WordOf(words::kAlertSight, alert.sight),
+              alert.seen_utime_us, words::WordOf(words::kAlertEnd, alert.end), static_cast<int>(alert.id == message.sounding_alert_id));
   }
 }
 
@@ -242,7 +245,8 @@ const std::array kTables{
           "bearing_drift_degps,known_days",
           bus::kTracks, AppendPlaced<tracks_t>},
     Table{"alerts",
-          "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text",
+          "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text,"
+          "name,in_zone,comes_near,time_left_s,latitude_deg,longitude_deg,sight,seen_utime_us,end,sounds",
           bus::kAlerts, AppendMessage<alerts_t>},
     Table{"pose",
           "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status,velocity_east_mps,"

@@ -59,6 +59,12 @@ inline constexpr std::array kAlertCause{Word{alert_t::CAUSE_GUARD_ZONE, "guard_z
 
 inline constexpr std::array kAlertLevel{Word{alert_t::LEVEL_CAUTION, "caution"}, Word{alert_t::LEVEL_WARNING, "warning"}};
 
+inline constexpr std::array kAlertSight{Word{alert_t::SIGHT_SEEN, "seen"}, Word{alert_t::SIGHT_JUST_SEEN, "just_seen"},
+                                        Word{alert_t::SIGHT_LOST, "lost"}};
+
+inline constexpr std::array kAlertEnd{Word{alert_t::END_NONE, ""},     Word{alert_t::END_CLEAR, "clear"},   Word{alert_t::END_PASSED, "passed"},
+                                      Word{alert_t::END_GONE, "gone"}, Word{alert_t::END_HIDDEN, "hidden"}, Word{alert_t::END_MERGED, "merged"}};
+
 inline constexpr std::array kAlertState{Word{alert_t::STATE_ACTIVE, "active"}, Word{alert_t::STATE_ACKNOWLEDGED, "acknowledged"},
                                         Word{alert_t::STATE_RECTIFIED, "rectified"}, Word{alert_t::STATE_CLEARED, "cleared"}};
 

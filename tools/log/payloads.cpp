@@ -26,6 +26,7 @@
 #include "lookout/map_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "lookout/order_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/run_info_t.hpp"
 #include "lookout/segments_t.hpp"
@@ -53,6 +54,7 @@ std::string_view FaultOf(const lidar_scan_t& message) { return messages::FaultOf
 std::string_view FaultOf(const segments_t& message) { return messages::FaultOf(message, bus::kMaxMessageBytes).value_or(""); }
 std::string_view FaultOf(const obstacles_t& message) { return messages::FaultOf(message, bus::kMaxMessageBytes).value_or(""); }
 std::string_view FaultOf(const alert_ack_t& message) { return messages::FaultOf(message).value_or(""); }
+std::string_view FaultOf(const order_t& message) { return messages::FaultOf(message).value_or(""); }
 std::string_view FaultOf(const tracks_t& message) { return messages::IsWellFormed(message) ? "" : kContradicts; }
 std::string_view FaultOf(const map_t& message) { return messages::IsWellFormed(message) ? "" : kContradicts; }
 
@@ -121,6 +123,7 @@ constexpr std::array kCheckers{Checker{bus::kLidarPackets.name, &Check<lidar_pac
                                Checker{bus::kAlerts.name, &Check<alerts_t>},
                                Checker{bus::kMap.name, &Check<map_t>},
                                Checker{bus::kAlertAck.name, &Check<alert_ack_t>},
+                               Checker{bus::kOrders.name, &Check<order_t>},
                                Checker{bus::kHealth.name, &Check<health_t>},
                                Checker{bus::kRunInfo.name, &Check<run_info_t>},
                                Checker{bus::kSimTruth.name, &Check<sim_truth_t>}};

@@ -24,6 +24,7 @@ struct Told {
   tracker::ScanKey first;
   tracker::ScanKey last;
   std::map<tracker::ScanKey, std::vector<tracker::Acknowledgement>> acknowledged;
+  std::map<tracker::ScanKey, std::vector<tracker::Order>> orders;
 };
 
 void Add(const alerts_t& message, std::vector<Told>& log) {
@@ -32,10 +33,13 @@ void Add(const alerts_t& message, std::vector<Told>& log) {
   if (message.is_watch || !time || !begin_time) return;  // of the watch: by the host's clock
   const tracker::ScanKey key{*time, message.seq};
   const tracker::ScanKey begin{*begin_time, message.begin_seq};
-  if (log.empty() || log.back().begin != begin || key < log.back().last) log.push_back({begin, key, key, {}});
+  if (log.empty() || log.back().begin != begin || key < log.back().last) log.push_back({begin, key, key, {}, {}});
   log.back().last = key;
   for (const auto& acknowledgement : message.acknowledged) {
     if (!messages::FaultOf(acknowledgement)) log.back().acknowledged[key].push_back(tracker::ToAcknowledgement(acknowledgement));
+  }
+  for (const auto& order : message.orders) {
+    if (!messages::FaultOf(order)) log.back().orders[key].push_back(tracker::ToOrder(order));
   }
 }
 
@@ -96,6 +100,7 @@ tracker::Script ToScript(const std::vector<Told>& log) {
     for (const auto& [key, acknowledgements] : told.acknowledged) {
       std::ranges::copy(acknowledgements, std::back_inserter(script.acknowledged[key]));
     }
+    for (const auto& [key, orders] : told.orders) std::ranges::copy(orders, std::back_inserter(script.orders[key]));
   }
   return script;
 }

@@ -18,6 +18,13 @@ constexpr std::size_t kMostToldPlaces = 200;
 // Less than it takes to read an alert and to press a button.
 constexpr std::chrono::milliseconds kToldAfter{1000};
 constexpr double kKeptSideRad = DegToRad(60.0);
+constexpr std::size_t kZone = static_cast<std::size_t>(AlertCause::kGuardZone) - 1;
+constexpr std::size_t kApproach = static_cast<std::size_t>(AlertCause::kClosestApproach) - 1;
+constexpr std::size_t kWatch = static_cast<std::size_t>(AlertCause::kWatch) - 1;
+// What has no track is shown for so long after it was seen last.
+constexpr std::chrono::milliseconds kSeenFor{500};
+// How far off a lost thing may be by now, for each second.
+constexpr double kMovedOnMps = 0.5;
 
 void SetState(Alert& alert, AlertState state, Utime time) {
   if (alert.state != state) alert.changed = time;
@@ -30,15 +37,47 @@ void SetLevel(Alert& alert, AlertLevel level, Utime time) {
   alert.changed = time;
 }
 
-bool IsGraver(const Alert& a, const Alert& b) {
-  const auto number = [](double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; };
-  const auto rank = [&number](const Alert& alert) {
-    return std::tuple(!alert.Holds(), alert.level != AlertLevel::kWarning, alert.state, number(alert.tcpa_s), number(alert.distance_m), alert.id);
+// What is not known comes last.
+double Known(double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; }
+
+bool IsToldBefore(const Alert& a, const Alert& b) {
+  const auto rank = [](const Alert& alert) {
+    const double soon_s = Known(std::isnan(alert.time_left_s) ? alert.tcpa_s : alert.time_left_s);
+    return std::tuple(!alert.Holds(), alert.level != AlertLevel::kWarning, alert.state, soon_s, Known(alert.distance_m), alert.id);
   };
   return rank(a) < rank(b);
 }
 
+bool IsOfTrack(std::int64_t thing) { return !IsOfPlaces(thing); }
+
+const Track* FindTrack(const Surroundings& around, std::int64_t id) {
+  const auto found = std::ranges::find(*around.tracks, id, &Track::id);
+  return found == around.tracks->end() ? nullptr : &*found;
+}
+
+// From where it was last, as the boat moves.
+void TellFromPlace(Alert& alert, const std::optional<Pose>& own) {
+  if (!own || alert.place_map_m.hasNaN()) return;
+  const Eigen::Vector2d off = alert.place_map_m - own->position_map_m.head<2>();
+  alert.distance_m = off.norm();
+  alert.bearing_rad = WrapTo2Pi(Atan2(off.x(), off.y()) - own->heading_rad);
+}
+
+bool IsAbaft(double bearing_rad) { return std::fabs(WrapToPi(bearing_rad)) > 0.5 * kPi; }
+
+DangerPlace PlaceOf(const Alert& alert) { return {alert.distance_m, alert.bearing_rad, alert.place_map_m}; }
+
 }  // namespace
+
+bool IsGraver(const Danger& one, const Danger& other) {
+  constexpr double kLikely = 0.5;
+  const auto rank = [](const Danger& danger) {
+    const bool is_likely = danger.probability >= kLikely;
+    return std::tuple(!is_likely, !danger.is_grave, is_likely ? 0.0 : -danger.probability, Known(danger.time_left_s), Known(danger.distance_m),
+                      danger.nearest_track);
+  };
+  return rank(one) < rank(other);
+}
 
 void Alerts::Latch::Update(Utime time, bool is_whole, bool says_on, bool says_off, double clear_s) {
   std::erase_if(looks, [time](const Look& look) { return time - look.time > kGreatestAge; });
@@ -67,72 +106,149 @@ void Alerts::Latch::ForgetLooks() {
   num_off = 0;
 }
 
-const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::vector<Danger>& dangers) {
+bool Alerts::Entry::IsRaised() const { return std::ranges::any_of(causes, &Latch::is_on); }
+
+const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::vector<Danger>& dangers, const Surroundings& around) {
   if (newest_ && std::chrono::abs(time - *newest_) > kGreatestAge) {
-    for (auto& [key, entry] : entries_) {
-      entry.raised.ForgetLooks();
+    for (auto& [thing, entry] : entries_) {
+      for (auto& latch : entry.causes) latch.ForgetLooks();
       entry.warning.ForgetLooks();
       entry.untold.ForgetLooks();
     }
   }
   newest_ = time;
 
-  std::map<Key, const Danger*> of_key;
+  std::map<std::int64_t, Evidence> of_thing;
   for (const auto& danger : dangers) {
-    const Key key{danger.cause, danger.track_id};
-    auto& known = of_key[key];
-    if (known == nullptr || danger.probability > known->probability) known = &danger;
-    if (danger.probability >= params_.raise_probability) entries_.try_emplace(key);
+    auto& known = of_thing[danger.thing].at(static_cast<std::size_t>(danger.cause) - 1);
+    if (known == nullptr || IsGraver(danger, *known)) known = &danger;
+    if (danger.probability < params_.raise_probability) continue;
+    Adopt(danger.thing, time, danger);
+    entries_.try_emplace(danger.thing);
   }
-  for (auto& [key, entry] : entries_) {
-    const auto found = of_key.find(key);
-    if (key != kUnnamedKey) Update(entry, key, time, is_whole, found == of_key.end() ? nullptr : found->second);
+  const auto evidence_of = [&of_thing](std::int64_t thing) {
+    const auto found = of_thing.find(thing);
+    return found == of_thing.end() ? Evidence{} : found->second;
+  };
+  for (auto& [thing, entry] : entries_) {
+    if (thing != kUnnamed) Update(entry, thing, time, is_whole, evidence_of(thing), around);
   }
-  const auto unnamed = FindUnnamed(of_key);
-  if (unnamed) entries_.try_emplace(kUnnamedKey);
-  if (const auto found = entries_.find(kUnnamedKey); found != entries_.end()) {
-    Update(found->second, kUnnamedKey, time, is_whole, unnamed ? &*unnamed : nullptr);
+  const auto unnamed = FindUnnamed(of_thing);
+  if (unnamed) entries_.try_emplace(kUnnamed);
+  if (const auto found = entries_.find(kUnnamed); found != entries_.end()) {
+    Update(found->second, kUnnamed, time, is_whole, {unnamed ? &*unnamed : nullptr}, around);
   }
   ClearOldestRectified(time);
 
   alerts_.clear();
   alerts_.swap(ended_);
-  std::erase_if(entries_, [this](const auto& item) {
-    const auto& [key, entry] = item;
-    if (entry.alert) alerts_.push_back(*entry.alert);
-    return entry.alert ? entry.alert->state == AlertState::kCleared : std::ranges::none_of(entry.raised.looks, &Latch::Look::says_on);
+  std::erase_if(entries_, [time](const auto& item) {
+    const auto& entry = item.second;
+    if (entry.alert) return entry.is_over && std::fabs(ToSeconds(time - entry.alert->changed)) > kSameS;
+    return std::ranges::none_of(entry.causes, [](const Latch& latch) { return std::ranges::any_of(latch.looks, &Latch::Look::says_on); });
   });
-  std::sort(alerts_.begin(), alerts_.end(), IsGraver);
+  for (auto& [thing, entry] : entries_) {
+    if (!entry.HasAlert()) continue;
+    alerts_.push_back(*entry.alert);
+    entry.is_over = entry.alert->state == AlertState::kCleared;
+  }
+  std::sort(alerts_.begin(), alerts_.end(), IsToldBefore);
   return alerts_;
 }
 
-void Alerts::Update(Entry& entry, const Key& key, Utime time, bool is_whole, const Danger* danger) {
-  const double probability = danger == nullptr ? 0.0 : danger->probability;
-  const bool is_grave = danger != nullptr && (danger->is_inside || (danger->tcpa_s > 0.0 && danger->tcpa_s < params_.warning_tcpa_s));
-  const bool says_on = probability >= params_.raise_probability;
-  const bool says_off = !(probability >= params_.clear_probability);
-  entry.raised.Update(time, is_whole, says_on, says_off, params_.clear_s);
-  entry.warning.Update(time, is_whole, says_on && is_grave, says_off || !is_grave, params_.clear_s);
-  Advance(entry, key, time);
-  if (!entry.alert || !entry.alert->Holds() || danger == nullptr) return;
+void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole, const Evidence& evidence, const Surroundings& around) {
+  LookFor(entry, thing, time, evidence, around);
+  // It may be hidden, and is not abaft yet.
+  const bool may_be_there =
+      entry.lost && entry.lost->is_hidden && ToSeconds(time - entry.lost->since) < kHiddenS && !IsAbaft(entry.alert->bearing_rad);
+  bool says_warning = false;
+  bool says_no_warning = true;
+  for (std::size_t i = 0; i < evidence.size(); ++i) {
+    const double probability = evidence[i] == nullptr ? 0.0 : evidence[i]->probability;
+    const bool says_on = probability >= params_.raise_probability;
+    const bool says_off = !(probability >= params_.clear_probability) && !may_be_there;
+    entry.causes[i].Update(time, is_whole, says_on, says_off, params_.clear_s);
+    const bool is_grave = evidence[i] != nullptr && evidence[i]->is_grave;
+    says_warning = says_warning || (says_on && is_grave);
+    says_no_warning = says_no_warning && !(is_grave && probability >= params_.clear_probability);
+  }
+  entry.warning.Update(time, is_whole, says_warning, says_no_warning, params_.clear_s);
+  Advance(entry, thing, time);
+  if (!entry.HasAlert() || !entry.alert->Holds()) return;
+  Tell(entry, evidence);
+  UpdatePlaces(entry, time, is_whole, evidence);
+}
+
+// Whether its track is still there; of what is not seen the place as it lies from the boat now.
+void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidence& evidence, const Surroundings& around) {
+  const bool is_told = std::ranges::any_of(evidence, [](const Danger* danger) { return danger != nullptr; });
+  if (!entry.HasAlert() || is_told) {
+    entry.lost.reset();
+    if (!entry.HasAlert()) return;
+  }
   auto& alert = *entry.alert;
-  alert.distance_m = danger->distance_m;
-  alert.bearing_rad = danger->bearing_rad;
-  alert.cpa_m = danger->cpa_m;
-  alert.tcpa_s = danger->cause == AlertCause::kClosestApproach ? danger->tcpa_s : kNan;
-  alert.cpa_probability = danger->cause == AlertCause::kClosestApproach ? probability : kNan;
-  if (IsOfPlaces(key.second)) UpdatePlaces(entry, time, is_whole, *danger);
+  if (IsOfTrack(thing) && around.tracks) {
+    const Track* track = FindTrack(around, thing);
+    if (track != nullptr) entry.was_likely = track->status != TrackStatus::kTentative && track->existence_probability >= 0.5;
+    const bool is_there = is_told || (track != nullptr && track->status != TrackStatus::kLost);
+    if (is_there) entry.lost.reset();
+    if (!is_there && !entry.lost) entry.lost = Lost{time, entry.was_likely};
+  }
+  const bool is_lost = entry.lost || (thing == kUnnamed && !is_told && time - alert.seen > kSeenFor);
+  if (is_lost) alert.nearest_track = kLandTrack;
+  if (is_lost || !is_told) {
+    TellFromPlace(alert, around.own);
+    alert.cpa_m = alert.tcpa_s = alert.cpa_probability = alert.time_left_s = kNan;
+  }
+  alert.sight = is_lost ? AlertSight::kLost : AlertSight::kSeen;
+}
+
+// What holds, in the words of this scan.
+void Alerts::Tell(Entry& entry, const Evidence& evidence) const {
+  auto& alert = *entry.alert;
+  alert.is_in_zone = entry.causes[kZone].is_on;
+  alert.comes_near = entry.causes[kApproach].is_on;
+  alert.cause = entry.causes[kWatch].is_on ? AlertCause::kWatch : alert.comes_near ? AlertCause::kClosestApproach : AlertCause::kGuardZone;
+  const Danger* nearest = evidence[kZone] != nullptr ? evidence[kZone] : evidence[kApproach] != nullptr ? evidence[kApproach] : evidence[kWatch];
+  if (nearest == nullptr) return;
+  alert.nearest_track = nearest->nearest_track;
+  alert.kind = nearest->kind;
+  alert.distance_m = nearest->distance_m;
+  alert.bearing_rad = nearest->bearing_rad;
+  if (!nearest->place_map_m.hasNaN()) alert.place_map_m = nearest->place_map_m;
+  bool is_just_seen = true;
+  for (const auto* danger : evidence) {
+    if (danger == nullptr) continue;
+    alert.seen = std::max(alert.seen, danger->seen);
+    if (danger->probability >= params_.raise_probability) is_just_seen = is_just_seen && danger->is_just_seen;
+  }
+  const bool is_likely =
+      std::ranges::any_of(evidence, [this](const Danger* danger) { return danger != nullptr && danger->probability >= params_.raise_probability; });
+  if (is_likely) alert.sight = is_just_seen ? AlertSight::kJustSeen : AlertSight::kSeen;
+  const Danger* approach = evidence[kApproach];
+  alert.cpa_m = approach == nullptr ? kNan : approach->cpa_m;
+  alert.tcpa_s = approach == nullptr ? kNan : approach->tcpa_s;
+  alert.cpa_probability = approach == nullptr ? kNan : approach->probability;
+  alert.time_left_s = approach == nullptr ? kNan : approach->time_left_s;
 }
 
 // Precondition: the alert holds.
-void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Danger& danger) const {
-  auto places = danger.places;
+void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidence& evidence) const {
+  std::vector<DangerPlace> places;
+  for (const auto* danger : evidence) {
+    if (danger != nullptr) std::ranges::copy(danger->places, std::back_inserter(places));
+  }
   if (places.size() > kMostToldPlaces) {
     std::ranges::stable_sort(places, {}, &DangerPlace::range_m);
     places.resize(kMostToldPlaces);
   }
   auto& alert = *entry.alert;
   std::optional<DangerPlace> untold;
+  if (!entry.told && alert.state == AlertState::kAcknowledged && !places.empty()) {
+    // It was acknowledged as a thing of one place.
+    entry.told.emplace(alert.thing == kUnnamed ? ToldPlaces::Kind::kThings : ToldPlaces::Kind::kLand);
+    entry.told->Tell(time, places);
+  }
   if (entry.told) {
     untold = entry.told->Untold(time, places);
     entry.untold.Update(time, is_whole, untold.has_value(), !untold, params_.clear_s);
@@ -149,23 +265,37 @@ void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Danger&
   if (alert.state == AlertState::kActive && untold) {
     alert.distance_m = untold->range_m;
     alert.bearing_rad = untold->bearing_rad;
+    alert.place_map_m = untold->position_map_m;
   }
 }
 
 // All in the guard zone that has no alert which holds. Call it once the others are up to date.
-std::optional<Danger> Alerts::FindUnnamed(const std::map<Key, const Danger*>& dangers) const {
+std::optional<Danger> Alerts::FindUnnamed(const std::map<std::int64_t, Evidence>& dangers) const {
   const Danger* nearest = nullptr;
   std::vector<DangerPlace> places;
-  for (const auto& [key, danger] : dangers) {
-    if (key.first != AlertCause::kGuardZone) continue;
-    const auto entry = entries_.find(key);
-    const bool holds = key != kUnnamedKey && entry != entries_.end() && entry->second.alert && entry->second.alert->Holds();
-    if (holds) continue;
-    std::ranges::copy(danger->places, std::back_inserter(places));
+  bool is_just_seen = true;
+  bool is_grave = false;
+  for (const auto& [thing, evidence] : dangers) {
+    const Danger* danger = evidence[kZone];
+    if (danger == nullptr || danger->probability < params_.raise_probability) continue;
+    const auto entry = entries_.find(thing);
+    if (thing != kUnnamed && entry != entries_.end() && entry->second.HasAlert() && entry->second.alert->Holds()) continue;
+    if (danger->places.empty()) {
+      places.push_back({danger->distance_m, danger->bearing_rad, danger->place_map_m});
+    } else {
+      std::ranges::copy(danger->places, std::back_inserter(places));
+    }
+    is_just_seen = is_just_seen && danger->is_just_seen;
+    is_grave = is_grave || danger->is_grave;
     if (nearest == nullptr || danger->distance_m < nearest->distance_m) nearest = danger;
   }
   if (nearest == nullptr) return std::nullopt;
   auto all = *nearest;
+  all.thing = kUnnamed;
+  all.nearest_track = kLandTrack;
+  all.kind = TrackKind::kUnknown;
+  all.is_just_seen = is_just_seen;
+  all.is_grave = is_grave;
   all.places = std::move(places);
   return all;
 }
@@ -173,37 +303,90 @@ std::optional<Danger> Alerts::FindUnnamed(const std::map<Key, const Danger*>& da
 // Whether an alert of something in the guard zone that has a name is so.
 bool Alerts::HasNamedInZone(bool (*is_so)(const Alert&)) const {
   return std::ranges::any_of(entries_, [is_so](const auto& item) {
-    const auto& [key, entry] = item;
-    return key.first == AlertCause::kGuardZone && key != kUnnamedKey && entry.alert && is_so(*entry.alert);
+    const auto& [thing, entry] = item;
+    return thing != kUnnamed && entry.HasAlert() && entry.causes[kZone].is_on && is_so(*entry.alert);
   });
 }
 
-void Alerts::Advance(Entry& entry, const Key& key, Utime time) {
+void Alerts::Advance(Entry& entry, std::int64_t thing, Utime time) {
   const auto level = entry.warning.is_on ? AlertLevel::kWarning : AlertLevel::kCaution;
-  if (!entry.alert) {
+  if (!entry.HasAlert()) {
     // Somebody is being told of the zone anyway. The looks stay: it comes up as soon as nobody is.
-    if (key == kUnnamedKey && HasNamedInZone([](const Alert& alert) { return alert.state == AlertState::kActive; })) entry.raised.is_on = false;
-    if (!entry.raised.is_on) return;
-    entry.alert = Alert{.id = next_id_++, .cause = key.first, .level = level, .track_id = key.second, .raised = time, .changed = time};
+    if (thing == kUnnamed && HasNamedInZone([](const Alert& alert) { return alert.state == AlertState::kActive; })) {
+      entry.causes[kZone].is_on = false;
+    }
+    if (!entry.IsRaised()) return;
+    if (entry.is_over) {
+      // The same thing again, so soon.
+      auto& alert = *entry.alert;
+      entry.is_over = false;
+      const bool is_known = entry.was_acknowledged && level <= alert.level;
+      SetState(alert, is_known ? AlertState::kAcknowledged : AlertState::kActive, time);
+      SetLevel(alert, level, time);
+      alert.end = AlertEnd::kNone;
+      return;
+    }
+    entry.alert = Alert{.id = next_id_++, .level = level, .thing = thing, .raised = time, .changed = time};
     return;
   }
   auto& alert = *entry.alert;
   if (alert.state == AlertState::kCleared) return;
-  if (!entry.raised.is_on) {
+  if (!entry.IsRaised()) {
+    if (alert.Holds()) {
+      alert.end = entry.lost ? (entry.lost->is_hidden && !IsAbaft(alert.bearing_rad) ? AlertEnd::kHidden
+                                : IsAbaft(alert.bearing_rad)                         ? AlertEnd::kPassed
+                                                                                     : AlertEnd::kGone)
+                             : (IsAbaft(alert.bearing_rad) ? AlertEnd::kPassed : AlertEnd::kClear);
+      alert.is_in_zone = alert.comes_near = false;
+      entry.was_acknowledged = alert.state == AlertState::kAcknowledged;
+    }
     // What is named by now has an alert of its own.
-    const bool is_named = key == kUnnamedKey && HasNamedInZone([](const Alert& other) { return other.Holds(); });
+    const bool is_named = thing == kUnnamed && HasNamedInZone([](const Alert& other) { return other.Holds(); });
     const bool wants_note = alert.state != AlertState::kAcknowledged && alert.level == AlertLevel::kWarning && !is_named;
     SetState(alert, wants_note ? AlertState::kRectified : AlertState::kCleared, time);
     return;
   }
   const bool rises = level > alert.level;
   SetLevel(alert, level, time);
-  if (rises || alert.state == AlertState::kRectified) SetState(alert, AlertState::kActive, time);
+  if (rises || alert.state == AlertState::kRectified) {
+    SetState(alert, AlertState::kActive, time);
+    alert.end = AlertEnd::kNone;
+  }
+}
+
+// The alert of what was lost, or had no name, goes on under the name under which it is found: at the same place.
+void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
+  if (IsOfPlaces(thing) || danger.place_map_m.hasNaN()) return;
+  if (const auto own = entries_.find(thing); own != entries_.end() && own->second.alert) return;
+  auto best = entries_.end();
+  double least_m = kSamePlaceM;
+  for (auto item = entries_.begin(); item != entries_.end(); ++item) {
+    const auto& [other, entry] = *item;
+    if (!entry.alert || entry.alert->place_map_m.hasNaN()) continue;
+    const bool is_free = IsOfTrack(other) ? entry.lost || entry.is_over : other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
+    if (!is_free) continue;
+    const double since_s = std::fabs(ToSeconds(time - entry.alert->seen));
+    const double away_m = (entry.alert->place_map_m - danger.place_map_m).norm() - kMovedOnMps * since_s;
+    if (away_m > least_m) continue;
+    least_m = away_m;
+    best = item;
+  }
+  if (best == entries_.end()) return;
+  auto moved = entries_.extract(best);
+  entries_.erase(thing);
+  auto& entry = moved.mapped();
+  moved.key() = thing;
+  entry.alert->thing = thing;
+  entry.lost.reset();
+  entry.told.reset();
+  entry.untold = {};
+  entry.shown.clear();
+  entries_.insert(std::move(moved));
 }
 
 void Alerts::ClearOldestRectified(Utime time) {
   std::vector<Alert*> rectified;
-  for (auto& [key, entry] : entries_) {
+  for (auto& [thing, entry] : entries_) {
     if (entry.alert && entry.alert->state == AlertState::kRectified) rectified.push_back(&*entry.alert);
   }
   if (rectified.size() <= kMostRectified) return;
@@ -212,13 +395,14 @@ void Alerts::ClearOldestRectified(Utime time) {
 }
 
 bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
-  for (auto& [key, entry] : entries_) {
-    if (!entry.alert || entry.alert->id != acknowledgement.alert_id || entry.alert->raised != acknowledgement.raised) continue;
+  for (auto& [thing, entry] : entries_) {
+    if (!entry.HasAlert() || entry.alert->id != acknowledgement.alert_id || entry.alert->raised != acknowledgement.raised) continue;
     if (entry.alert->state == AlertState::kActive) {
       SetState(*entry.alert, AlertState::kAcknowledged, time);
-      if (IsOfPlaces(key.second)) TellPlaces(entry, key, acknowledgement);
+      if (IsOfPlaces(thing) || !entry.shown.empty()) TellPlaces(entry, thing, acknowledgement);
     } else if (entry.alert->state == AlertState::kRectified) {
       SetState(*entry.alert, AlertState::kCleared, time);
+      entry.was_acknowledged = true;
     } else {
       return false;
     }
@@ -229,8 +413,8 @@ bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
 
 // What was shown a second ago, followed since: what came up between is not acknowledged. What the tracker itself acknowledges for a person (see
 // KeptAcknowledgements) is on the side of the boat where it was told.
-void Alerts::TellPlaces(Entry& entry, const Key& key, const Acknowledgement& acknowledgement) {
-  if (!entry.told) entry.told.emplace(key.second == kLandTrack ? ToldPlaces::Kind::kLand : ToldPlaces::Kind::kThings);
+void Alerts::TellPlaces(Entry& entry, std::int64_t thing, const Acknowledgement& acknowledgement) {
+  if (!entry.told) entry.told.emplace(thing == kUnnamed ? ToldPlaces::Kind::kThings : ToldPlaces::Kind::kLand);
   entry.untold = {};
   if (entry.shown.empty()) return;
   auto [shown_at, places] = entry.shown.front();
@@ -243,7 +427,8 @@ void Alerts::TellPlaces(Entry& entry, const Key& key, const Acknowledgement& ack
 }
 
 void Alerts::ForgetMap() {
-  for (auto& [key, entry] : entries_) {
+  for (auto& [thing, entry] : entries_) {
+    if (entry.alert) entry.alert->place_map_m.setConstant(kNan);
     if (entry.told) entry.told->ForgetMap();
     for (auto& shown : entry.shown) {
       for (auto& place : shown.places) place.position_map_m.setConstant(kNan);
@@ -251,30 +436,34 @@ void Alerts::ForgetMap() {
   }
 }
 
-void Alerts::Rename(std::int64_t from_track, std::int64_t to_track, Utime time) {
-  if (from_track == to_track) return;
-  for (const auto cause : {AlertCause::kGuardZone, AlertCause::kClosestApproach}) {
-    auto moved = entries_.extract(Key{cause, from_track});
-    if (!moved) continue;
-    moved.key().second = to_track;
-    if (moved.mapped().alert) moved.mapped().alert->track_id = to_track;
-    const auto placed = entries_.insert(std::move(moved));
-    if (placed.inserted) continue;
-    auto& stays = placed.position->second;
-    auto& goes = placed.node.mapped();
-    if (!goes.alert) continue;
-    if (!stays.alert || goes.alert->id < stays.alert->id) std::swap(stays, goes);
-    if (!goes.alert) continue;
-    if (goes.alert->Holds()) {
-      const bool is_open = goes.alert->state == AlertState::kActive || stays.alert->state != AlertState::kAcknowledged;
-      SetState(*stays.alert, is_open ? AlertState::kActive : AlertState::kAcknowledged, time);
-      SetLevel(*stays.alert, std::max(stays.alert->level, goes.alert->level), time);
-      if (goes.raised.is_on) stays.raised.is_on = true;
-      if (goes.warning.is_on) stays.warning.is_on = true;
-    }
-    SetState(*goes.alert, AlertState::kCleared, time);
-    ended_.push_back(*goes.alert);
+void Alerts::Rename(std::int64_t from_thing, std::int64_t to_thing, Utime time) {
+  if (from_thing == to_thing) return;
+  auto moved = entries_.extract(from_thing);
+  if (!moved) return;
+  moved.key() = to_thing;
+  const auto placed = entries_.insert(std::move(moved));
+  auto& stays = placed.position->second;
+  if (placed.inserted) {
+    if (stays.alert) stays.alert->thing = to_thing;
+    return;
   }
+  auto& goes = placed.node.mapped();
+  if (!goes.alert) return;
+  const bool is_older = goes.HasAlert() == stays.HasAlert() && stays.alert && goes.alert->id < stays.alert->id;
+  if ((goes.HasAlert() && !stays.HasAlert()) || !stays.alert || is_older) std::swap(stays, goes);
+  stays.alert->thing = to_thing;
+  if (!goes.HasAlert()) return;
+  if (goes.alert->Holds()) {
+    const bool is_open = goes.alert->state == AlertState::kActive || stays.alert->state != AlertState::kAcknowledged;
+    SetState(*stays.alert, is_open ? AlertState::kActive : AlertState::kAcknowledged, time);
+    SetLevel(*stays.alert, std::max(stays.alert->level, goes.alert->level), time);
+    for (std::size_t i = 0; i < stays.causes.size(); ++i) stays.causes[i].Merge(goes.causes[i]);
+    stays.warning.Merge(goes.warning);
+    if (!is_open && stays.told) stays.told->Tell(time, std::array{PlaceOf(*goes.alert)});
+  }
+  SetState(*goes.alert, AlertState::kCleared, time);
+  goes.alert->end = AlertEnd::kMerged;
+  ended_.push_back(*goes.alert);
 }
 
 }  // namespace lookout::tracker

@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
+#include <utility>
 
 #include "common/core/angles.hpp"
+#include "services/tracker/core/outline.hpp"
 
 namespace lookout::tracker {
 
@@ -16,6 +19,9 @@ namespace {
 constexpr double kOwnStillMps = 0.26;
 // Longer than a moored boat sways to one side, shorter than it takes to cast off.
 constexpr double kOwnAverageS = 5.0;
+// A track that is no crest, rather than one.
+constexpr double kLikelyThing = 0.5;
+constexpr double kLikelyApproach = 0.5;
 
 std::vector<Eigen::Vector2d> InVessel(std::span<const Eigen::Vector2d> corners_map_m, const Pose& own) {
   const auto [sine, cosine] = SinCosOf(own.heading_rad);
@@ -29,27 +35,61 @@ std::vector<Eigen::Vector2d> InVessel(std::span<const Eigen::Vector2d> corners_m
 
 bool IsConfirmed(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
 
+DangerPlace PlaceOf(const NearestPoint& point, const std::optional<Pose>& own) {
+  DangerPlace place{point.range_m, point.bearing_rad};
+  if (own) {
+    const auto [sine, cosine] = SinCosOf(own->heading_rad + place.bearing_rad);
+    place.position_map_m = own->position_map_m.head<2>() + place.range_m * Eigen::Vector2d(sine, cosine);
+  }
+  return place;
+}
+
+// The nearest point of a track.
+DangerPlace PlaceOf(const Track& track, const Pose& own) {
+  if (track.outline_m.empty()) return {track.range_m, track.bearing_rad};
+  const Eigen::Vector2d here_m = own.position_map_m.head<2>();
+  const Eigen::Vector2d place_m = GapOf(track.outline_m, {&here_m, 1}).from_m;
+  const Eigen::Vector2d off = place_m - here_m;
+  return {off.norm(), WrapTo2Pi(Atan2(off.x(), off.y()) - own.heading_rad), place_m};
+}
+
 // What is in the zone under one name.
 struct InZone {
   std::optional<NearestPoint> nearest;
   std::vector<NearestPoint> things;  // the nearest point of each obstacle
+  const Track* track = nullptr;      // the nearest
+  int num_tracks = 0;
+  bool is_certain = false;
+  double probability = 0.0;
+
+  void Add(const NearestPoint& point, const Track* of, bool is_certain_one, double with_probability) {
+    if (!nearest || point.range_m < nearest->range_m) {
+      nearest = point;
+      track = of;
+    }
+    things.push_back(point);
+    is_certain = is_certain || is_certain_one;
+    probability = std::max(probability, with_probability);
+  }
 };
 
-Danger DangerOf(std::int64_t track_id, const NearestPoint& nearest, const std::vector<NearestPoint>& places, const std::optional<Pose>& own) {
+Danger DangerOf(std::int64_t thing, const InZone& found, const std::vector<NearestPoint>& places, const std::optional<Pose>& own) {
+  const auto nearest = PlaceOf(*found.nearest, own);
   Danger danger{.cause = AlertCause::kGuardZone,
-                .track_id = track_id,
-                .probability = 1.0,
+                .thing = thing,
+                .probability = found.probability,
                 .distance_m = nearest.range_m,
                 .bearing_rad = nearest.bearing_rad,
-                .is_inside = true};
-  for (const auto& place : places) {
-    DangerPlace told{place.range_m, place.bearing_rad};
-    if (own) {
-      const auto [sine, cosine] = SinCosOf(own->heading_rad + place.bearing_rad);
-      told.position_map_m = own->position_map_m.head<2>() + place.range_m * Eigen::Vector2d(sine, cosine);
-    }
-    danger.places.push_back(told);
+                .is_grave = !own || !own->velocity_map_mps.allFinite(),
+                .is_just_seen = own && !found.is_certain,
+                .place_map_m = nearest.position_map_m};
+  if (found.track != nullptr) {
+    danger.nearest_track = found.track->id;
+    danger.kind = found.track->kind;
+    danger.seen = found.track->seen;
   }
+  danger.places.reserve(places.size());
+  for (const auto& place : places) danger.places.push_back(PlaceOf(place, own));
   return danger;
 }
 
@@ -109,14 +149,15 @@ class ShoreBearings {
 }  // namespace
 
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
-                                     const std::optional<Pose>& own) {
+                                     const std::optional<Pose>& own, const Things& things) {
   if (params.range_m <= 0.0) return {};
-  std::map<std::int64_t, InZone> in_zone;  // of each track, land and what has no name
+  std::map<std::int64_t, InZone> in_zone;  // of each thing, land and what has no name
   ShoreBearings shore(params);
-  const auto add = [&](std::int64_t track_id, const std::optional<NearestPoint>& point) {
+  const auto add = [&](std::int64_t thing, const std::optional<NearestPoint>& point, const Track* track) {
     if (!point || point->range_m > params.range_m) return;
-    KeepNearer(in_zone[track_id].nearest, point);
-    in_zone[track_id].things.push_back(*point);
+    const bool is_certain = params.takes_tentative || thing == kLandTrack || (track != nullptr && IsConfirmed(*track));
+    const bool counts = is_certain || track == nullptr || !own || track->existence_probability >= kLikelyThing;
+    in_zone[thing].Add(*point, track, is_certain, counts ? 1.0 : 0.0);
   };
 
   std::map<std::int32_t, const Track*> track_of;
@@ -128,25 +169,29 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
     const Track* track = found == track_of.end() ? nullptr : found->second;
     if (!outline.is_sure && !params.takes_tentative && (track == nullptr || !IsConfirmed(*track))) continue;
     const bool is_land = outline.is_land || std::ranges::count(picture.land_segment_ids, outline.segment_id) > 0;
-    const auto track_id = track != nullptr ? track->id : is_land ? kLandTrack : kUnnamed;
+    const auto thing = track != nullptr ? things.ThingOf(track->id) : is_land ? kLandTrack : kUnnamed;
     auto nearest = NearestWithin(params.bearing, outline.corners_m, !outline.is_line);
     if (!outline.nearest_m.hasNaN()) KeepNearer(nearest, NearestWithin(params.bearing, {&outline.nearest_m, 1}, false));
-    add(track_id, nearest);
-    if (track_id != kLandTrack) continue;
+    add(thing, nearest, track);
+    if (thing != kLandTrack) continue;
     if (nearest) shore.Add(*nearest);
     shore.Add(outline.corners_m, !outline.is_line);
   }
   if (own) {
     for (const auto& track : picture.tracks) {
-      if (IsConfirmed(track) || (track.status == TrackStatus::kTentative && params.takes_tentative))
-        add(track.id, NearestWithin(params.bearing, InVessel(track.outline_m, *own), true));
+      if (!IsConfirmed(track) && !(track.status == TrackStatus::kTentative && params.takes_tentative)) continue;
+      const auto nearest = NearestWithin(params.bearing, InVessel(track.outline_m, *own), true);
+      const auto thing = things.ThingOf(track.id);
+      add(thing, nearest, &track);
+      if (thing == kLandTrack && nearest) shore.Add(*nearest);
     }
   }
 
   std::vector<Danger> dangers;
   dangers.reserve(in_zone.size());
-  for (const auto& [track_id, found] : in_zone) {
-    dangers.push_back(DangerOf(track_id, *found.nearest, track_id == kLandTrack ? shore.Places() : found.things, own));
+  for (const auto& [thing, found] : in_zone) {
+    const bool has_places = IsOfPlaces(thing) || things.IsGroup(thing);
+    dangers.push_back(DangerOf(thing, found, thing == kLandTrack ? shore.Places() : has_places ? found.things : std::vector<NearestPoint>{}, own));
   }
   return dangers;
 }
@@ -162,31 +207,49 @@ bool StillWatch::Update(Utime time, const Eigen::Vector2d& velocity_mps) {
   return mean_mps_.norm() < kOwnStillMps;  // false where it is NaN
 }
 
-std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& picture, bool is_own_still) {
+std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const Picture& picture, const std::optional<Pose>& own, bool is_own_still,
+                                           const Things& things) {
+  if (!own) return {};
+  const double own_mps = own->velocity_map_mps.allFinite() ? own->velocity_map_mps.norm() : 0.0;
+  const double needed_s = TimeToAct(own_mps, params.ability);
+  const auto add_approach = [needed_s](const ClosestApproach& approach, double limit_m, Danger& danger) {
+    danger.probability = approach.probability;
+    danger.distance_m = approach.distance_m;
+    danger.cpa_m = approach.cpa_m;
+    danger.tcpa_s = approach.tcpa_s;
+    danger.time_left_s = TimeLeft(approach, limit_m);
+    danger.is_grave = danger.time_left_s < needed_s;  // not where it is NaN
+  };
   std::vector<Danger> dangers;
+  std::map<std::int64_t, std::vector<DangerPlace>> places_of;  // of things of several tracks: all that are likely to come too near
   for (const auto& track : picture.tracks) {
     if (!IsConfirmed(track)) continue;
     if (is_own_still && track.velocity_mps.isZero(0.0)) continue;
-    dangers.push_back({.cause = AlertCause::kClosestApproach,
-                       .track_id = track.id,
-                       .probability = track.approach.probability,
-                       .tcpa_s = track.approach.tcpa_s,
-                       .distance_m = track.approach.distance_m,
-                       .bearing_rad = track.bearing_rad,
-                       .cpa_m = track.approach.cpa_m,
-                       .is_inside = track.approach.distance_m < limit_m});
+    const auto place = PlaceOf(track, *own);
+    Danger danger{.cause = AlertCause::kClosestApproach,
+                  .thing = things.ThingOf(track.id),
+                  .nearest_track = track.id,
+                  .kind = track.kind,
+                  .bearing_rad = track.bearing_rad,
+                  .seen = track.seen,
+                  .place_map_m = place.position_map_m};
+    add_approach(track.approach, params.limit_m, danger);
+    if (danger.thing != track.id) danger.bearing_rad = place.bearing_rad;
+    if (danger.probability >= kLikelyApproach && things.IsGroup(danger.thing)) places_of[danger.thing].push_back(place);
+    dangers.push_back(std::move(danger));
   }
   if (picture.land_approach && !is_own_still) {
     const auto& [approach, land_limit_m, bearing_rad, places] = *picture.land_approach;
-    dangers.push_back({.cause = AlertCause::kClosestApproach,
-                       .track_id = kLandTrack,
-                       .probability = approach.probability,
-                       .tcpa_s = approach.tcpa_s,
-                       .distance_m = approach.distance_m,
-                       .bearing_rad = bearing_rad,
-                       .cpa_m = approach.cpa_m,
-                       .is_inside = approach.distance_m < land_limit_m,
-                       .places = places});
+    Danger danger{.cause = AlertCause::kClosestApproach, .thing = kLandTrack, .kind = TrackKind::kStructure, .bearing_rad = bearing_rad};
+    add_approach(approach, land_limit_m, danger);
+    const auto nearest = std::ranges::min_element(places, {}, &DangerPlace::range_m);
+    if (nearest != places.end()) danger.place_map_m = nearest->position_map_m;
+    std::ranges::copy(places, std::back_inserter(places_of[kLandTrack]));
+    dangers.push_back(std::move(danger));
+  }
+  for (auto& danger : dangers) {
+    const auto places = places_of.find(danger.thing);
+    if (places != places_of.end()) danger.places = places->second;
   }
   return dangers;
 }

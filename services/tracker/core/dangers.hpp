@@ -8,21 +8,28 @@
 #include "common/core/guard_sector.hpp"
 #include "common/core/pose.hpp"
 #include "common/core/utime.hpp"
-#include "services/tracker/core/alerts.hpp"
+#include "services/tracker/core/danger.hpp"
 #include "services/tracker/core/gatherer.hpp"
 #include "services/tracker/core/scan.hpp"
+#include "services/tracker/core/things.hpp"
 #include "services/tracker/core/tracker.hpp"
+#include "services/tracker/core/urgency.hpp"
 
 namespace lookout::tracker {
 
-/// What is within sector and range, one danger for each track and one for land. Each obstacle of the scan that is sure, or of a confirmed track,
+/// What is within sector and range, one danger for each thing and one for land. Each obstacle of the scan that is sure, or of a confirmed track,
 /// counts from its first scan on (tentative ones where the zone takes them), as the vessel sees it: along the waterline of land where there is one,
 /// else the outline. So it needs no pose. It is of the track that it was assigned to, of kLandTrack, or of kUnnamed. Confirmed tracks count beyond
-/// what is seen of them now, where the own pose is known. Its places: of land the nearest in each bin of bearing, of all else the nearest point of
-/// each obstacle.
+/// what is seen of them now, where the own pose is known. Its places: of land the nearest in each bin of bearing, of what has no name and of a thing
+/// of several tracks the nearest point of each obstacle.
+///
+/// To be in the zone is worth a look. To act on is what comes nearer than the limit (ClosestApproachDangers); only where the own pose or velocity is
+/// not known, so that nobody can tell, the zone warns.
+///
+/// What is no confirmed track yet is just seen, and counts where it is likely to be a thing: crests are sure in single scans, too.
 /// @param own  placed, at the end of the scan
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
-                                     const std::optional<Pose>& own);
+                                     const std::optional<Pose>& own, const Things& things = {});
 
 /// Whether the own boat lies still: its velocity over ground, averaged over some seconds, is below half a knot. So sway in the berth and the noise of
 /// the receiver are none, but a drift is.
@@ -37,9 +44,16 @@ class StillWatch {
   Utime newest_;
 };
 
-/// Confirmed and coasting tracks, and land on the boat's way. Where the own boat lies still and the track stands, neither comes nearer to the other:
-/// of them only the guard zone speaks, so a boat in its berth has peace, while one that drifts down on a pile is warned.
-/// @param limit_m  of the closest approach
-std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& picture, bool is_own_still);
+struct ApproachParams {
+  double limit_m = 0.0;  // of the closest approach
+  OwnAbility ability = {};
+};
+
+/// Confirmed and coasting tracks, and land on the boat's way. What leaves no more time than this boat needs to act is grave. Where the own boat lies
+/// still and the track stands, neither comes nearer to the other: of them only the guard zone speaks, so a boat in its berth has peace, while one
+/// that drifts down on a pile is warned.
+/// @param own  placed, at the end of the scan; nullopt: nobody knows how near anything will come
+std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const Picture& picture, const std::optional<Pose>& own, bool is_own_still,
+                                           const Things& things = {});
 
 }  // namespace lookout::tracker

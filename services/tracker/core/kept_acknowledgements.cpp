@@ -31,10 +31,10 @@ void KeptAcknowledgements::Keep(Utime time, const Datum& datum, std::span<const 
   auto older = std::exchange(kept_, {});
   for (const auto& alert : alerts) {
     if (alert.state != AlertState::kAcknowledged) continue;
-    Kept kept{time, datum, alert.cause, alert.level, std::nullopt, Eigen::Vector2d::Zero(), alert.distance_m, alert.bearing_rad};
-    if (alert.track_id == kUnnamed) continue;  // nobody knows what it was
-    if (alert.track_id != kLandTrack) {
-      const auto* track = FindTrack(tracks, alert.track_id);
+    Kept kept{time, datum, alert.level, std::nullopt, Eigen::Vector2d::Zero(), alert.distance_m, alert.bearing_rad};
+    if (alert.thing == kUnnamed) continue;  // nobody knows what it was
+    if (alert.thing != kLandTrack) {
+      const auto* track = FindTrack(tracks, alert.nearest_track);
       if (track == nullptr) continue;
       kept.position_m = track->position_m;
       kept.velocity_mps = track->velocity_mps;
@@ -53,7 +53,7 @@ std::vector<KeptAcknowledgements::Kept>::iterator KeptAcknowledgements::FindSame
   auto same = older.end();
   double least_m = kSamePlaceM;
   for (auto one = older.begin(); one != older.end(); ++one) {
-    if (one->cause != kept.cause || one->position_m.has_value() != kept.position_m.has_value() || !one->datum.IsSameAs(kept.datum)) continue;
+    if (one->position_m.has_value() != kept.position_m.has_value() || !one->datum.IsSameAs(kept.datum)) continue;
     const double distance_m = kept.position_m ? (*kept.position_m - one->ExpectedAt(kept.time)).norm() : 0.0;
     if (distance_m > least_m) continue;
     same = one;
@@ -68,10 +68,10 @@ std::vector<Acknowledgement> KeptAcknowledgements::Take(Utime time, const Datum&
   std::vector<Acknowledgement> taken;
   for (const auto& alert : alerts) {
     if (alert.state != AlertState::kActive) continue;
-    const auto* track = FindTrack(tracks, alert.track_id);
+    const auto* track = FindTrack(tracks, alert.nearest_track);
     const auto same = std::ranges::find_if(kept_, [&](const Kept& kept) {
-      if (alert.cause != kept.cause || alert.level > kept.level || alert.raised <= kept.time || !datum.IsSameAs(kept.datum)) return false;
-      if (alert.track_id == kLandTrack || track == nullptr) return alert.track_id == kLandTrack && !kept.position_m && kept.IsSameLand(alert);
+      if (alert.level > kept.level || alert.raised <= kept.time || !datum.IsSameAs(kept.datum)) return false;
+      if (alert.thing == kLandTrack || track == nullptr) return alert.thing == kLandTrack && !kept.position_m && kept.IsSameLand(alert);
       return kept.position_m && (track->position_m - kept.ExpectedAt(time)).norm() <= kSamePlaceM;
     });
     if (same == kept_.end()) continue;

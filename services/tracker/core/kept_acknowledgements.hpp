@@ -16,7 +16,7 @@
 namespace lookout::tracker {
 
 /// When lidar, navigator or the process begin anew, tracks get other ids, and what still holds is raised again. Nobody should have to take note of
-/// the same buoy twice: an alert of the same cause, no graver, of a track that stands where the old one would be by now, is acknowledged too; and one
+/// the same buoy twice: an alert, no graver, of a track that stands where the old one would be by now, is acknowledged too; and one
 /// of land where one of land was, on that side of the boat (60 deg) and no nearer than half as far.
 class KeptAcknowledgements {
  public:
@@ -35,7 +35,6 @@ class KeptAcknowledgements {
   struct Kept {
     Utime time;  // when it was kept
     Datum datum;
-    AlertCause cause;
     AlertLevel level;
     std::optional<Eigen::Vector2d> position_m;  // map of the datum; nullopt: of land
     Eigen::Vector2d velocity_mps;

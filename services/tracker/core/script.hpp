@@ -6,6 +6,7 @@
 
 #include "services/tracker/core/alerts.hpp"
 #include "services/tracker/core/gatherer.hpp"
+#include "services/tracker/core/order.hpp"
 #include "services/tracker/core/own_map.hpp"
 
 namespace lookout::tracker {
@@ -26,6 +27,7 @@ struct Script {
   std::vector<Stretch> stretches;  // in their order; at least one
   /// Taken with a scan, in their order.
   std::map<ScanKey, std::vector<Acknowledgement>> acknowledged;
+  std::map<ScanKey, std::vector<Order>> orders;
   std::map<ScanKey, GivenMap> given;  // by the scan at which the process began
 };
 

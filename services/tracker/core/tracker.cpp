@@ -57,6 +57,8 @@ struct Tracker::Memory {
 Tracker::Tracker(const TrackerParams& params) : params_(params), memory_(std::make_unique<Memory>(params)) {}
 Tracker::~Tracker() = default;
 
+void Tracker::SetEncounter(const EncounterParams& encounter) { params_.encounter = encounter; }
+
 void Tracker::Reset() {
   memory_->known.tracks.clear();
   memory_->known.together_s.clear();

@@ -37,6 +37,8 @@ class Tracker {
   /// position that its speed does not explain, begins anew; each has its counter.
   /// Cost and memory: README.md.
   const Picture& Update(const ScanInput& scan);
+  /// From the next scan on.
+  void SetEncounter(const EncounterParams& encounter);
   /// Start mark: everything is forgotten but the next id.
   void Reset();
 

@@ -361,11 +361,11 @@ std::optional<Danger> ZoneSight::danger() const {
   const auto& largest = wide_.front();
   return Danger{
       .cause = AlertCause::kWatch,
-      .track_id = kFirstUnseenId - num_told_,
+      .thing = kFirstUnseenId - num_told_,
       .probability = 1.0,
       .distance_m = largest.from_m,
       .bearing_rad = largest.bearing.width_rad >= kTwoPi - 1e-9 ? kNan : WrapTo2Pi(largest.bearing.start_rad + largest.bearing.width_rad / 2.0),
-      .is_inside = is_whole_};
+      .is_grave = is_whole_};
 }
 
 }  // namespace lookout::tracker

@@ -9,7 +9,7 @@
 
 #include "common/core/guard_sector.hpp"
 #include "common/core/utime.hpp"
-#include "services/tracker/core/alerts.hpp"
+#include "services/tracker/core/danger.hpp"
 #include "services/tracker/core/scan.hpp"
 
 namespace lookout::tracker {
@@ -133,7 +133,7 @@ class ZoneSight {
   /// Bearings of which a part is not looked into, those of narrow gaps, too; rounded.
   int unseen_deg() const { return unseen_deg_; }
 
-  /// For Alerts: of cause WATCH, and of another `track_id` each time that parts come up of which 5 deg were not told before.
+  /// For Alerts: of cause WATCH, and as another thing each time that parts come up of which 5 deg were not told before.
   std::optional<Danger> danger() const;
 
  private:

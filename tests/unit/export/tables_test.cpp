@@ -27,7 +27,8 @@ TEST(TableHeader, IsTheContractWithScriptsOutside) {
             "width_m,num_points,status,confidence,kind,thing_probability,range_m,bearing_deg,height_m,outline_wkt");
   EXPECT_TRUE(TableHeader("tracks").starts_with("utime_us,track_id,latitude_deg,longitude_deg,speed_mps,course_deg,cpa_m,tcpa_s,status,kind,"));
   EXPECT_EQ(TableHeader("alerts"),
-            "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text");
+            "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text,"
+            "name,in_zone,comes_near,time_left_s,latitude_deg,longitude_deg,sight,seen_utime_us,end,sounds");
   EXPECT_EQ(TableHeader("pose"),
             "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status,velocity_east_mps,"
             "velocity_north_mps,velocity_up_mps,cov_ee_m2,cov_en_m2,cov_nn_m2,cov_uu_m2,velocity_cov_ee_m2ps2,velocity_cov_en_m2ps2,"
@@ -169,25 +170,34 @@ TEST_F(TablesTest, AlertsHaveTheirWordsAndTheirText) {
   message.end_utime_us = kStartUs;
   message.num_alerts = 1;
   message.alerts.resize(1);
-  message.alerts[0] = {.id = 3,
-                       .cause = alert_t::CAUSE_CLOSEST_APPROACH,
-                       .level = alert_t::LEVEL_WARNING,
-                       .state = alert_t::STATE_ACTIVE,
-                       .track_id = 17,
-                       .raised_utime_us = kStartUs - 5,
-                       .changed_utime_us = kStartUs - 4,
-                       .distance_m = 20.0F,
-                       .bearing_rad = 0.0F,
-                       .cpa_m = 3.0F,
-                       .tcpa_s = 21.0F,
-                       .cpa_probability = 0.75F,
-                       .text = "boat 17: closest approach 3 m in 21 s, 0 deg to starboard"};
+  alert_t& alert = message.alerts[0];
+  alert.id = 3;
+  alert.cause = alert_t::CAUSE_CLOSEST_APPROACH;
+  alert.comes_near = 1;
+  alert.level = alert_t::LEVEL_WARNING;
+  alert.state = alert_t::STATE_ACTIVE;
+  alert.track_id = 17;
+  alert.name = "boat 17";
+  alert.raised_utime_us = kStartUs - 5;
+  alert.changed_utime_us = kStartUs - 4;
+  alert.distance_m = 20.0F;
+  alert.cpa_m = 3.0F;
+  alert.tcpa_s = 21.0F;
+  alert.cpa_probability = 0.75F;
+  alert.time_left_s = 17.5F;
+  alert.latitude_deg = 43.7;
+  alert.longitude_deg = -72.3;
+  alert.sight = alert_t::SIGHT_JUST_SEEN;
+  alert.seen_utime_us = kStartUs - 1;
+  alert.text = "boat 17: closest approach 3 m in 21 s, 0 deg to starboard";
+  message.sounding_alert_id = 3;
   Add(bus::kAlerts, message);
   ASSERT_EQ(Export("alerts"), kExitFine) << errors_;
   ASSERT_EQ(Rows().size(), 1U);
-  EXPECT_EQ(Rows()[0],
-            "1700000000000000,3,closest_approach,warning,active,17,1699999999999995,1699999999999996,20.0000,0.0000,3.0000,21.00,0.7500,"
-            "\"boat 17: closest approach 3 m in 21 s, 0 deg to starboard\"");
+  EXPECT_EQ(
+      Rows()[0],
+      "1700000000000000,3,closest_approach,warning,active,17,1699999999999995,1699999999999996,20.0000,0.0000,3.0000,21.00,0.7500,"
+      "\"boat 17: closest approach 3 m in 21 s, 0 deg to starboard\",boat 17,0,1,17.50,43.700000000,-72.300000000,just_seen,1699999999999999,,1");
 }
 
 TEST_F(TablesTest, ReturnsOfALogWithoutSegmentsHaveNeitherLabelNorReason) {

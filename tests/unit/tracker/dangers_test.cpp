@@ -50,6 +50,7 @@ VesselOutline Land(std::int32_t id, const std::vector<Eigen::Vector2d>& waterlin
   return land;
 }
 
+constexpr ApproachParams kApproach{.limit_m = 5.0};
 constexpr GuardZoneParams kZone{.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
 
 TEST(GuardZoneDangers, AreNearAndInTheSector) {
@@ -57,12 +58,12 @@ TEST(GuardZoneDangers, AreNearAndInTheSector) {
   picture.tracks = {At(1, {0.0, 6.0}), At(2, {0.0, 12.0}), At(3, {0.0, -6.0}), At(4, {6.0, 4.5})};
   const auto dangers = GuardZoneDangers(kZone, picture, {}, Own());
   ASSERT_EQ(dangers.size(), 2U);
-  EXPECT_EQ(dangers[0].track_id, 1);
+  EXPECT_EQ(dangers[0].thing, 1);
   EXPECT_NEAR(dangers[0].distance_m, 5.5, 1e-9);
   EXPECT_NEAR(WrapToPi(dangers[0].bearing_rad), 0.0, 1e-9);
-  EXPECT_TRUE(dangers[0].is_inside);
+  EXPECT_FALSE(dangers[0].is_grave) << "what is in the zone is worth a look";
   EXPECT_EQ(dangers[0].probability, 1.0);
-  EXPECT_EQ(dangers[1].track_id, 4);
+  EXPECT_EQ(dangers[1].thing, 4);
 }
 
 TEST(GuardZoneDangers, TurnWithTheBoat) {
@@ -93,7 +94,7 @@ TEST(GuardZoneDangers, OfLandAreOne) {
   const std::vector<VesselOutline> outlines{Land(7, {{9.0, -20.0}, {9.0, 20.0}}), remembered, Land(9, {{-3.0, -20.0}, {-3.0, 20.0}})};
   const auto dangers = GuardZoneDangers(kZone, picture, outlines, Own());
   ASSERT_EQ(dangers.size(), 1U);
-  EXPECT_EQ(dangers[0].track_id, kLandTrack);
+  EXPECT_EQ(dangers[0].thing, kLandTrack);
   EXPECT_NEAR(dangers[0].distance_m, 7.0, 1e-9) << "between its corners; what is astern is not in the sector";
 }
 
@@ -135,15 +136,16 @@ TEST(GuardZoneDangers, AreOfWhatIsSeenBeforeItIsConfirmed) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 30.0}, TrackStatus::kTentative), At(2, {0.0, 30.0})};
   picture.tracks[0].segment_ids = {4};
+  picture.tracks[0].existence_probability = 0.7;
   picture.tracks[1].segment_ids = {5};
   const std::vector<VesselOutline> outlines{Ahead(4, 8.0), Ahead(5, 7.0, false), Ahead(6, 6.0), Ahead(7, 5.0, false), Ahead(8, 11.0)};
   const auto dangers = GuardZoneDangers(kZone, picture, outlines, Own());
   ASSERT_EQ(dangers.size(), 3U);
-  EXPECT_EQ(dangers[0].track_id, kUnnamed) << "of no track";
+  EXPECT_EQ(dangers[0].thing, kUnnamed) << "of no track";
   EXPECT_NEAR(dangers[0].distance_m, 6.0, 1e-9);
-  EXPECT_EQ(dangers[1].track_id, 1);
+  EXPECT_EQ(dangers[1].thing, 1);
   EXPECT_NEAR(dangers[1].distance_m, 8.0, 1e-9) << "where it is seen, not where the track is";
-  EXPECT_EQ(dangers[2].track_id, 2) << "tentative in this scan, but confirmed by others";
+  EXPECT_EQ(dangers[2].thing, 2) << "tentative in this scan, but confirmed by others";
 }
 
 TEST(GuardZoneDangers, AreFoundWithoutAPose) {
@@ -152,9 +154,9 @@ TEST(GuardZoneDangers, AreFoundWithoutAPose) {
   const auto dangers =
       GuardZoneDangers(kZone, picture, std::vector{Ahead(4, 8.0), Ahead(5, 9.5), Land(6, {{7.0, -20.0}, {7.0, 20.0}})}, std::nullopt);
   ASSERT_EQ(dangers.size(), 2U);
-  EXPECT_EQ(dangers[0].track_id, kUnnamed);
+  EXPECT_EQ(dangers[0].thing, kUnnamed);
   EXPECT_NEAR(dangers[0].distance_m, 8.0, 1e-9) << "the nearest";
-  EXPECT_EQ(dangers[1].track_id, kLandTrack);
+  EXPECT_EQ(dangers[1].thing, kLandTrack);
 }
 
 TEST(GuardZoneDangers, AreAsNearAsTheNearestReturn) {
@@ -173,24 +175,25 @@ TEST(ClosestApproachDangers, AreThoseOfConfirmedAndCoastingTracks) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 6.0}), At(2, {0.0, 26.0}, TrackStatus::kCoasting), At(3, {0.0, 6.0}, TrackStatus::kTentative),
                     At(4, {0.0, 6.0}, TrackStatus::kLost)};
-  const auto dangers = ClosestApproachDangers(5.0, picture, false);
+  const auto dangers = ClosestApproachDangers(kApproach, picture, Own(), false);
   ASSERT_EQ(dangers.size(), 2U);
-  EXPECT_EQ(dangers[0].track_id, 1);
-  EXPECT_TRUE(dangers[0].is_inside);
+  EXPECT_EQ(dangers[0].thing, 1);
+  EXPECT_TRUE(dangers[0].is_grave);
+  EXPECT_EQ(dangers[0].time_left_s, 0.0);
   EXPECT_EQ(dangers[0].probability, 0.8);
   EXPECT_EQ(dangers[0].tcpa_s, 9.0);
-  EXPECT_EQ(dangers[1].track_id, 2);
-  EXPECT_FALSE(dangers[1].is_inside);
+  EXPECT_EQ(dangers[1].thing, 2);
+  EXPECT_GT(dangers[1].time_left_s, 5.0);
 }
 
 TEST(ClosestApproachDangers, AreNoneBetweenWhatStandsAndABoatThatLiesStill) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 3.0}), At(2, {0.0, 9.0})};
   picture.tracks[1].velocity_mps = {0.0, -1.0};
-  const auto dangers = ClosestApproachDangers(5.0, picture, true);
+  const auto dangers = ClosestApproachDangers(kApproach, picture, Own(), true);
   ASSERT_EQ(dangers.size(), 1U);
-  EXPECT_EQ(dangers[0].track_id, 2) << "another that comes is told";
-  EXPECT_EQ(ClosestApproachDangers(5.0, picture, false).size(), 2U);
+  EXPECT_EQ(dangers[0].thing, 2) << "another that comes is told";
+  EXPECT_EQ(ClosestApproachDangers(kApproach, picture, Own(), false).size(), 2U);
 }
 
 constexpr Utime kStart{std::chrono::seconds(1'700'000'000)};
@@ -220,18 +223,19 @@ TEST(ClosestApproachDangers, LeaveABoatInItsBerthInPeace) {
   picture.tracks = {At(1, {3.0, 0.0}), At(2, {0.0, 30.0})};
   picture.tracks[0].approach.probability = 1.0;
   picture.tracks[1].approach.probability = 0.0;
-  Alerts alerts({.warning_tcpa_s = 15.0});
+  Alerts alerts({});
   StillWatch watch;
   auto time = kStart;
   for (int scan = 0; scan < 36'000; ++scan) {
     time += std::chrono::milliseconds(100);
     const double sway_mps = 0.3 * std::sin(kTwoPi * scan / 45.0);
     const bool is_still = watch.Update(time, {sway_mps + noise(random), noise(random)});
-    ASSERT_TRUE(alerts.Update(time, true, ClosestApproachDangers(5.0, picture, is_still)).empty()) << scan;
+    ASSERT_TRUE(alerts.Update(time, true, ClosestApproachDangers(kApproach, picture, Own(), is_still)).empty()) << scan;
   }
   picture.tracks[1].velocity_mps = {0.0, -1.5};
   picture.tracks[1].approach.probability = 0.9;
-  for (int scan = 0; scan < 3; ++scan) alerts.Update(time += std::chrono::milliseconds(100), true, ClosestApproachDangers(5.0, picture, true));
+  for (int scan = 0; scan < 3; ++scan)
+    alerts.Update(time += std::chrono::milliseconds(100), true, ClosestApproachDangers(kApproach, picture, Own(), true));
   EXPECT_EQ(alerts.alerts().size(), 1U);
 }
 

@@ -27,7 +27,7 @@ class KeptAcknowledgementsTest : public ::testing::Test {
  protected:
   // Of the guard zone, raised now.
   Alert Of(std::int64_t track_id, AlertState state, AlertLevel level = AlertLevel::kWarning) const {
-    return {.id = 100 + track_id, .level = level, .state = state, .track_id = track_id, .raised = time_, .changed = time_};
+    return {.id = 100 + track_id, .level = level, .state = state, .thing = track_id, .nearest_track = track_id, .raised = time_, .changed = time_};
   }
   Alert OfLand(AlertState state, double distance_m = 8.0, double bearing_deg = 0.0) const {
     auto alert = Of(kLandTrack, state);

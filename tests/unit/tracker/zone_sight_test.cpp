@@ -168,14 +168,14 @@ TEST_F(TheZone, IsNotLookedIntoWhereTheLidarDoesNotFire) {
   EXPECT_TRUE(sight.is_whole());
   ASSERT_TRUE(sight.danger());
   EXPECT_EQ(sight.danger()->cause, AlertCause::kWatch);
-  EXPECT_TRUE(sight.danger()->is_inside);
+  EXPECT_TRUE(sight.danger()->is_grave);
   EXPECT_NEAR(WrapToPi(sight.danger()->bearing_rad), 0.0, 0.02);
 
   ZoneSight all_round(MakeParams(0.0, 360.0));
   Scans(all_round, 35, Astern);
   EXPECT_EQ(InWords(all_round.parts()), "270 to 90 why 6");
   EXPECT_FALSE(all_round.is_whole());
-  EXPECT_FALSE(all_round.danger()->is_inside) << "a caution";
+  EXPECT_FALSE(all_round.danger()->is_grave) << "a caution";
   EXPECT_EQ(all_round.unseen_deg(), 180);
 
   Scans(all_round, 35, Astern);
@@ -232,16 +232,16 @@ TEST_F(TheZone, TellsAnewWhatWasNotTold) {
     return [=](double azimuth_deg) { return azimuth_deg < from_deg || azimuth_deg >= to_deg; };
   };
   Scans(sight, 40, without(30.0, 60.0));
-  const auto first = sight.danger()->track_id;
+  const auto first = sight.danger()->thing;
   Scans(sight, 40, without(28.0, 62.0));
-  EXPECT_EQ(sight.danger()->track_id, first) << "as good as the same";
+  EXPECT_EQ(sight.danger()->thing, first) << "as good as the same";
   Scans(sight, 40, without(28.0, 100.0));
-  const auto second = sight.danger()->track_id;
+  const auto second = sight.danger()->thing;
   EXPECT_NE(second, first);
   Scans(sight, 40, without(28.0, 60.0));
-  EXPECT_EQ(sight.danger()->track_id, second);
+  EXPECT_EQ(sight.danger()->thing, second);
   Scans(sight, 40, without(28.0, 100.0));
-  EXPECT_NE(sight.danger()->track_id, second) << "it was seen meanwhile";
+  EXPECT_NE(sight.danger()->thing, second) << "it was seen meanwhile";
 }
 
 TEST_F(TheZone, IsNothingWithoutARangeOrBeams) {

@@ -46,7 +46,7 @@ OwnMap MapOfDays(int num_days) {
 
 Run RunWith(const std::optional<OwnMap>& map, int num_scans, double speed_mps = 0.5) {
   auto params = test::MakeParams();
-  params.guard_zone = {.range_m = 10.0, .bearing = {0.0, 6.283}};
+  params.look_out.limits.guard_zone = {.range_m = 10.0, .bearing = {0.0, 6.283}};
   if (map) params.map = std::make_shared<const OwnMap>(*map);
   bus::MemoryBus bus;
   Service service(bus, params);

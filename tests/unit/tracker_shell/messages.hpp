@@ -27,7 +27,7 @@ inline Params MakeParams() {
   params.tracker.max_range_m = 120.0;
   params.tracker.own_hull_m = {{-1.0, -0.5}, {1.0, -0.5}, {1.0, 0.5}, {-1.0, 0.5}};
   params.tracker.encounter = {.limit_m = 5.0, .look_ahead_s = 30.0};
-  params.alerts.warning_tcpa_s = 15.0;
+  params.look_out.limits.cpa_limit_m = 5.0;
   return params;
 }
 

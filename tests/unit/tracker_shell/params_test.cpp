@@ -15,7 +15,7 @@ namespace {
 
 TEST(TrackerParams, HaveTheGuardZoneOfTheBoats) {
   for (const auto& folder : {support::kDemoConfig, support::kCatabotConfig}) {
-    const auto zone = LoadParams(folder.string()).guard_zone;
+    const auto zone = LoadParams(folder.string()).look_out.limits.guard_zone;
     EXPECT_EQ(zone.range_m, 10.0);
     EXPECT_NEAR(zone.bearing.start_rad, DegToRad(300.0), 1e-12);
     EXPECT_NEAR(zone.bearing.width_rad, DegToRad(120.0), 1e-12);

@@ -368,7 +368,7 @@ TEST_F(TrackerService, SaysWhenNobodyLooksAndTakesNoteOfIt) {
 // The navigator is gone: obstacles come in the vessel frame only, 8 m ahead, and nothing waits.
 TEST(TrackerServiceWithAGuardZone, WarnsWithoutPose) {
   auto params = test::MakeParams();
-  params.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
+  params.look_out.limits.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
   bus::MemoryBus bus;
   Service service(bus, params);
   std::vector<alerts_t> alerts;
@@ -401,7 +401,7 @@ TEST(TrackerServiceWithAGuardZone, WarnsWithoutPose) {
 // Without position or heading all that is in the zone shares one alert: a buoy was acknowledged, a motor boat crossed 8 m ahead, and nothing rang.
 TEST(TrackerServiceWithAGuardZone, RingsWithoutPoseForABoatBesideABuoyThatWasAcknowledged) {
   auto params = test::MakeParams();
-  params.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
+  params.look_out.limits.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
   bus::MemoryBus bus;
   Service service(bus, params);
   std::vector<alerts_t> alerts;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <string>
 
 #include "common/bus/channels.hpp"
@@ -261,29 +262,104 @@ TEST(AlertsMessage, GoesBackToTheAcknowledgementItCameFrom) {
 TEST(AlertsMessage, LeavesOutTheLeastGraveWhereItIsFull) {
   std::vector<Alert> alerts(2000);
   for (std::size_t i = 0; i < alerts.size(); ++i) alerts[i].id = static_cast<std::int64_t>(i) + 1;
-  const auto message = ToMessage(ScanLabel{}, alerts, {}, {}, bus::kMaxMessageBytes);
+  const auto message = ToMessage(ScanLabel{}, AlertsTold{.alerts = alerts}, {}, bus::kMaxMessageBytes);
   EXPECT_LE(message.getEncodedSize(), bus::kMaxMessageBytes);
   ASSERT_GT(message.num_alerts, 100);
   EXPECT_LT(message.num_alerts, 2000);
   EXPECT_EQ(message.alerts[0].id, 1);
 }
 
+// A row of TRACKS, or none: who looks the track up finds it.
+TEST(AlertsMessage, NamesOnlyTracksThatThereAre) {
+  std::vector<Alert> alerts(3);
+  for (std::size_t i = 0; i < alerts.size(); ++i) {
+    alerts[i].id = static_cast<std::int64_t>(i) + 1;
+    alerts[i].thing = alerts[i].nearest_track = static_cast<std::int64_t>(i) + 5;
+    alerts[i].kind = TrackKind::kBoat;
+  }
+  Picture picture;
+  picture.tracks.resize(2);
+  picture.tracks[0].id = 5;
+  picture.tracks[0].status = TrackStatus::kConfirmed;
+  picture.tracks[1].id = 6;
+  picture.tracks[1].status = TrackStatus::kLost;
+  const auto message = ToMessage(ScanLabel{}, AlertsTold{.alerts = alerts}, picture, bus::kMaxMessageBytes);
+  ASSERT_EQ(message.num_alerts, 3);
+  EXPECT_EQ(message.alerts[0].track_id, 5);
+  EXPECT_EQ(message.alerts[1].track_id, 0);
+  EXPECT_EQ(message.alerts[2].track_id, 0);
+  EXPECT_EQ(message.alerts[2].name, "boat 7");
+}
+
+TEST(AlertsMessage, SaysWhereOnTheEarthAThingIs) {
+  ScanLabel label;
+  label.datum = {43.7, -72.3, 100.0};
+  Alert alert;
+  alert.id = 1;
+  EXPECT_TRUE(std::isnan(ToMessage(alert, label.datum.Map()).latitude_deg));
+  alert.place_map_m = {0.0, 100.0};
+  EXPECT_NEAR(ToMessage(alert, label.datum.Map()).latitude_deg, 43.7009, 1e-4);
+  EXPECT_NEAR(ToMessage(alert, label.datum.Map()).longitude_deg, -72.3, 1e-9);
+}
+
+TEST(OrdersMessage, GoesBackToTheOrderItCameFrom) {
+  order_t message{};
+  message.utime_us = 5;
+  message.seq = 6;
+  message.source = "page";
+  message.kind = order_t::KIND_SETTINGS;
+  message.mode = order_t::MODE_HARBOUR;
+  message.guard_zone_range_m = 12.5F;
+  message.guard_zone_from_rad = message.guard_zone_to_rad = std::numeric_limits<float>::quiet_NaN();
+  message.cpa_limit_m = 3.1F;
+  const auto again = ToMessage(ToOrder(message));
+  EXPECT_EQ(std::tie(again.utime_us, again.seq, again.source, again.kind, again.mode, again.guard_zone_range_m, again.cpa_limit_m),
+            std::tie(message.utime_us, message.seq, message.source, message.kind, message.mode, message.guard_zone_range_m, message.cpa_limit_m));
+  EXPECT_TRUE(std::isnan(again.guard_zone_from_rad));
+}
+
 TEST(AlertText, SaysWhoHowNearAndFromWhere) {
   Alert alert;
   alert.cause = AlertCause::kClosestApproach;
-  alert.track_id = 17;
+  alert.comes_near = true;
+  alert.thing = 17;
+  alert.kind = TrackKind::kBoat;
+  alert.distance_m = 7.31;
   alert.cpa_m = 3.2;
   alert.tcpa_s = 20.6;
   alert.bearing_rad = DegToRad(40.0);
-  EXPECT_EQ(TextOf(alert, TrackKind::kBoat), "boat 17: closest approach 3 m in 21 s, 40 deg to starboard");
-  alert.cause = AlertCause::kGuardZone;
-  alert.track_id = 0;
+  EXPECT_EQ(TextOf(alert), "boat 17: closest approach 3 m in 21 s, 40 deg to starboard");
+  alert.is_in_zone = true;
+  EXPECT_EQ(TextOf(alert), "boat 17 in the guard zone: 7.3 m, 40 deg to starboard; passes at 3 m in 21 s");
+  alert.sight = AlertSight::kJustSeen;
+  alert.comes_near = false;
+  EXPECT_EQ(TextOf(alert), "boat 17 in the guard zone: 7.3 m, 40 deg to starboard (just seen)");
+  alert.sight = AlertSight::kLost;
+  EXPECT_EQ(TextOf(alert), "boat 17 is not seen any more: last 7.3 m from here, 40 deg to starboard");
+  alert.state = AlertState::kCleared;
+  alert.end = AlertEnd::kPassed;
+  EXPECT_EQ(TextOf(alert), "boat 17 has passed");
+  alert = {};
+  alert.is_in_zone = true;
   alert.distance_m = 7.31;
   alert.bearing_rad = DegToRad(348.0);
-  EXPECT_EQ(TextOf(alert, std::nullopt), "land in the guard zone: 7.3 m, 12 deg to port");
-  alert.track_id = kUnnamed;
-  EXPECT_EQ(TextOf(alert, std::nullopt), "obstacle in the guard zone: 7.3 m, 12 deg to port");
+  EXPECT_EQ(TextOf(alert), "land in the guard zone: 7.3 m, 12 deg to port");
+  alert.thing = kUnnamed;
+  EXPECT_EQ(TextOf(alert), "obstacle in the guard zone: 7.3 m, 12 deg to port");
   EXPECT_EQ(ToMessage(alert, std::nullopt).track_id, 0);
+}
+
+TEST(AlertText, SumsUpWhatIsMoreThanThree) {
+  std::vector<Alert> alerts(5);
+  for (std::size_t i = 0; i < alerts.size(); ++i) {
+    alerts[i].thing = static_cast<std::int64_t>(i) + 5;
+    alerts[i].kind = TrackKind::kBoat;
+    alerts[i].distance_m = 19.5 - 4.0 * static_cast<double>(i);
+    alerts[i].bearing_rad = DegToRad(12.0);
+  }
+  EXPECT_EQ(SummaryOf(alerts), "5 things within 20 m, the nearest boat 9, 4 m, 12 deg to starboard");
+  alerts[0].state = alerts[1].state = AlertState::kRectified;
+  EXPECT_EQ(SummaryOf(alerts), "");
 }
 
 }  // namespace

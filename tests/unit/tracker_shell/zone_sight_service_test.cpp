@@ -15,8 +15,8 @@ namespace {
 
 Params MakeZoneParams() {
   auto params = test::MakeParams();
-  params.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
-  params.zone_sight.zone = params.guard_zone;
+  params.look_out.limits.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
+  params.zone_sight.zone = params.look_out.limits.guard_zone;
   params.zone_sight.min_range_m = 0.5;
   params.zone_sight.T_vessel_lidar.translation().z() = 1.0;
   params.zone_sight.own_vessel_box_m = {Eigen::Vector3d(-1.0, -0.5, -1.0), Eigen::Vector3d(1.0, 0.5, 2.0)};

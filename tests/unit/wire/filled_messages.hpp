@@ -16,6 +16,7 @@
 #include "lookout/map_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "lookout/order_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/run_info_t.hpp"
 #include "lookout/segments_t.hpp"
@@ -141,13 +142,19 @@ inline void Fill(map_t& m) {
 
 inline void Fill(alert_ack_t& m) { m.source = "page"; }
 
+inline void Fill(order_t& m) { m.source = "page"; }
+
 inline void Fill(alerts_t& m) {
   m.num_alerts = 2;
   m.alerts.resize(2);
+  m.alerts[0].name = "boat 17";
   m.alerts[0].text = "boat 17: closest approach 3 m in 21 s";
   m.num_acknowledged = 1;
   m.acknowledged.resize(1);
   Fill(m.acknowledged[0]);
+  m.num_orders = 1;
+  m.orders.resize(1);
+  Fill(m.orders[0]);
 }
 
 inline void Fill(health_t& m) {
@@ -205,6 +212,7 @@ void ForEachFilledMessage(Use use) {
   fill_and_use(alerts_t{});
   fill_and_use(map_t{});
   fill_and_use(alert_ack_t{});
+  fill_and_use(order_t{});
   fill_and_use(health_t{});
   fill_and_use(run_info_t{});
   fill_and_use(sim_truth_t{});

@@ -1,0 +1,35 @@
+// How near is too near: what the config says, what a skipper has set, and in harbour what the own speed leaves.
+#pragma once
+
+#include "common/core/guard_sector.hpp"
+#include "services/tracker/core/order.hpp"
+#include "services/tracker/core/urgency.hpp"
+
+namespace lookout::tracker {
+
+/// Of the config. A skipper's limits are kept within least and most.
+struct LimitParams {
+  Mode mode = Mode::kOpenWater;
+  GuardZoneParams guard_zone = {};
+  double cpa_limit_m = 0.0;
+  double least_guard_zone_m = 0.1;
+  double most_guard_zone_m = 1000.0;
+  double least_cpa_limit_m = 0.1;
+  double most_cpa_limit_m = 500.0;
+  // In harbour: beyond the way that is gone before the boat stops.
+  double harbour_margin_m = 2.0;
+  double harbour_least_cpa_m = 1.0;
+};
+
+struct Limits {
+  Mode mode = Mode::kOpenWater;
+  GuardZoneParams guard_zone = {};
+  double cpa_limit_m = 0.0;
+};
+
+/// In harbour both shrink with the own speed, and never grow beyond what is set: the zone to the way that the boat goes before it stops and a margin,
+/// the closest approach to half of that way.
+/// @param settings    NaN: as the config says; its mode counts
+Limits LimitsOf(const LimitParams& params, const Settings& settings, double own_mps, const OwnAbility& ability);
+
+}  // namespace lookout::tracker

@@ -1,0 +1,68 @@
+// From what is known after a scan to the alerts: what is a danger, how urgent it is, which alert sounds.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/core/pose.hpp"
+#include "common/core/utime.hpp"
+#include "services/tracker/core/alerts.hpp"
+#include "services/tracker/core/dangers.hpp"
+#include "services/tracker/core/limits.hpp"
+#include "services/tracker/core/order.hpp"
+#include "services/tracker/core/sound.hpp"
+#include "services/tracker/core/things.hpp"
+
+namespace lookout::tracker {
+
+struct LookOutParams {
+  AlertParams alerts = {};
+  LimitParams limits = {};
+  OwnAbility ability = {};
+};
+
+class LookOut {
+ public:
+  explicit LookOut(const LookOutParams& params) : params_(params), alerts_(params.alerts) {
+    settings_.mode = params.limits.mode;
+    limits_ = LimitsOf(params.limits, settings_, 0.0, params.ability);
+  }
+
+  /// With the next scan, before the tracker takes it.
+  void Take(const Order& order, Utime time);
+  /// Of the next scan: the tracker's closest approach goes by them, too.
+  const Limits& Begin(const std::optional<Pose>& own);
+
+  /// Before Update: acknowledgements know the names of this scan.
+  void Rename(const Picture& picture, Utime time);
+  bool Acknowledge(const Acknowledgement& acknowledgement, Utime time) { return alerts_.Acknowledge(acknowledgement, time); }
+
+  /// @param own     placed, at the end of the scan
+  /// @param unseen  parts of the guard zone that nobody looks into
+  const std::vector<Alert>& Update(Utime time, bool is_whole, const Picture& picture, std::span<const VesselOutline> outlines,
+                                   const std::optional<Pose>& own, const std::optional<Danger>& unseen);
+
+  void ForgetMap() { alerts_.ForgetMap(); }
+  void ForgetTracks() { things_.Clear(); }
+
+  const std::vector<Alert>& alerts() const { return alerts_.alerts(); }
+  const Limits& limits() const { return limits_; }
+  std::int64_t sounding() const { return sounding_; }
+  std::optional<Utime> silenced_until() const { return sound_.silenced_until(); }
+
+ private:
+  LookOutParams params_;
+  Settings settings_;
+  Limits limits_;
+  Things things_;
+  std::vector<Eigen::Vector2d> shore_m_;  // as it was told last
+  StillWatch still_;
+  Alerts alerts_;
+  Sound sound_;
+  std::int64_t sounding_ = 0;
+};
+
+}  // namespace lookout::tracker

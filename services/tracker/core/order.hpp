@@ -1,0 +1,33 @@
+// What a skipper tells the look-out to do.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/core/elementary.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::tracker {
+
+// Numbers of both are those of the wire.
+enum class OrderKind : std::int32_t { kSilence = 1, kSettings = 2 };
+enum class Mode : std::int32_t { kOpenWater = 1, kHarbour = 2 };
+
+/// NaN: as the config says.
+struct Settings {
+  Mode mode = Mode::kOpenWater;
+  double guard_zone_range_m = kNan;  // 0: none
+  double guard_zone_from_rad = kNan;
+  double guard_zone_to_rad = kNan;
+  double cpa_limit_m = kNan;
+};
+
+struct Order {
+  Utime time;  // host time of who sent it
+  std::int64_t seq = 0;
+  std::string source;
+  OrderKind kind = OrderKind::kSilence;
+  Settings settings = {};
+};
+
+}  // namespace lookout::tracker

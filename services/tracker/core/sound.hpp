@@ -1,0 +1,48 @@
+// Which alert sounds.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "common/core/utime.hpp"
+#include "services/tracker/core/alerts.hpp"
+
+namespace lookout::tracker {
+
+/// One sound: the gravest that is active. A warning sounds until somebody takes note, a caution once. A warning that becomes a caution does not sound
+/// again, a caution that becomes a warning does. Silence is no taking note: alerts stay as they are, and what comes up as a warning, or becomes one,
+/// meanwhile sounds all the same.
+class Sound {
+ public:
+  static constexpr std::chrono::seconds kSilence{30};
+  static constexpr std::chrono::seconds kOnce{1};
+  /// Alerts that come again within it are the same (Alerts::kSameS): they were heard.
+  static constexpr std::chrono::seconds kRemembered{10};
+
+  void Silence(Utime time);
+
+  /// One scan.
+  /// @param alerts  the gravest first
+  /// @return id of the one that sounds; 0: none
+  std::int64_t Update(Utime time, std::span<const Alert> alerts);
+
+  /// nullopt: it is not.
+  std::optional<Utime> silenced_until() const { return silenced_until_; }
+
+ private:
+  struct Heard {
+    AlertLevel level = AlertLevel::kCaution;  // with which it was active last
+    AlertState state = AlertState::kActive;
+    Utime begin;  // when it became active
+    Utime known;  // when there was such an alert last
+    bool is_silenced = false;
+  };
+
+  std::map<std::int64_t, Heard> heard_;  // by alert
+  std::optional<Utime> silenced_until_;
+};
+
+}  // namespace lookout::tracker

@@ -1,0 +1,107 @@
+#include "services/tracker/core/things.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <set>
+
+#include "services/tracker/core/danger.hpp"
+#include "services/tracker/core/outline.hpp"
+
+namespace lookout::tracker {
+
+namespace {
+
+// Longer than the boats around: a piece of a pier, a barge.
+constexpr double kLongM = 8.0;
+
+bool IsKnown(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
+bool IsStructure(const Track& track) { return track.kind == TrackKind::kStructure || track.rectangle.length_m >= kLongM; }
+
+double RadiusOf(const Track& track) { return 0.5 * Eigen::Vector2d(track.rectangle.length_m, track.rectangle.width_m).norm(); }
+
+bool IsBeside(const Track& one, const Track& other) {
+  const double reach_m = RadiusOf(one) + RadiusOf(other) + Things::kBesideM;
+  if ((one.rectangle.center_m - other.rectangle.center_m).squaredNorm() > reach_m * reach_m) return false;
+  return GapOf(one.outline_m, other.outline_m).distance_m <= Things::kBesideM;
+}
+
+bool IsBesideAny(const Track& track, std::span<const Eigen::Vector2d> places_m) {
+  const double reach_m = RadiusOf(track) + Things::kBesideM;
+  return std::ranges::any_of(places_m, [&](const Eigen::Vector2d& place_m) {
+    return (place_m - track.rectangle.center_m).squaredNorm() <= reach_m * reach_m &&
+           GapOf(track.outline_m, {&place_m, 1}).distance_m <= Things::kBesideM;
+  });
+}
+
+}  // namespace
+
+void Things::Update(Utime time, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
+  merged_.clear();
+  std::vector<const Track*> standing;
+  std::set<std::int64_t> ids;
+  for (const auto& track : tracks) {
+    if (!IsKnown(track) || !track.velocity_mps.isZero(0.0) || track.outline_m.empty()) continue;
+    standing.push_back(&track);
+    ids.insert(track.id);
+    members_.try_emplace(track.id, Member{track.id, time, false});
+  }
+  std::erase_if(members_, [&ids](const auto& item) { return !ids.contains(item.first); });
+  for (const auto* track : standing) {
+    const auto& member = members_.at(track->id);
+    if (member.thing == kLandTrack || ToSeconds(time - member.stands_since) < kStandsS) continue;
+    if (IsBesideAny(*track, shore_m)) Join(member.thing, kLandTrack);
+  }
+  for (const auto* track : standing) {
+    const auto& own = members_.at(track->id);
+    if (ToSeconds(time - own.stands_since) < kStandsS) continue;
+    for (const auto* other : standing) {
+      const auto& with = members_.at(other->id);
+      if (with.thing == own.thing) continue;
+      const bool belongs = with.thing == kLandTrack || with.is_attached || IsStructure(*other);
+      if (!belongs || !IsBeside(*track, *other)) continue;
+      Join(std::max(own.thing, with.thing), std::min(own.thing, with.thing));
+    }
+  }
+}
+
+void Things::Join(std::int64_t from_thing, std::int64_t to_thing) {
+  if (from_thing == to_thing) return;
+  for (auto& [track, member] : members_) {
+    if (member.thing != from_thing && member.thing != to_thing) continue;
+    member.thing = to_thing;
+    member.is_attached = true;
+  }
+  merged_.emplace_back(from_thing, to_thing);
+}
+
+void Things::Rename(std::int64_t from_track, std::int64_t to_track) {
+  auto moved = members_.extract(from_track);
+  if (!moved) return;
+  const auto known = members_.find(to_track);
+  const std::int64_t to_thing = known == members_.end() ? to_track : known->second.thing;
+  if (moved.mapped().thing == from_track) {
+    for (auto& [track, member] : members_) {
+      if (member.thing == from_track) member.thing = to_thing;
+    }
+    moved.mapped().thing = to_thing;
+  }
+  moved.key() = to_track;
+  members_.insert(std::move(moved));
+}
+
+void Things::Clear() {
+  members_.clear();
+  merged_.clear();
+}
+
+std::int64_t Things::ThingOf(std::int64_t track_id) const {
+  const auto found = members_.find(track_id);
+  return found == members_.end() ? track_id : found->second.thing;
+}
+
+bool Things::IsGroup(std::int64_t thing) const {
+  return thing == kLandTrack ||
+         std::ranges::any_of(members_, [thing](const auto& item) { return item.second.thing == thing && item.second.is_attached; });
+}
+
+}  // namespace lookout::tracker

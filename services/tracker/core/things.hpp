@@ -1,0 +1,49 @@
+// Which tracks are one thing with others: land, structures, and what stands beside them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/core/utime.hpp"
+#include "services/tracker/core/picture.hpp"
+
+namespace lookout::tracker {
+
+/// A pier in pieces is one thing, and so is a quay with all that is moored to it: what stands for a while within kBesideM of land, or of what belongs
+/// to land, belongs to it; and what stands beside a structure belongs to that. Once it does it stays so, since outlines and kinds flicker, until it
+/// moves or is no track any more. So a boat that casts off is a thing of its own.
+class Things {
+ public:
+  static constexpr double kBesideM = 3.0;
+  /// A boat that only stops there is none of it.
+  static constexpr double kStandsS = 2.0;
+
+  /// One scan. Call Rename of that scan before.
+  /// @param shore_m  remembered land with water before it, on the map
+  void Update(Utime time, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m);
+  void Rename(std::int64_t from_track, std::int64_t to_track);
+  void Clear();
+
+  /// The thing that a track belongs to: land, the first track of its structure, or it alone.
+  std::int64_t ThingOf(std::int64_t track_id) const;
+  /// Whether it is of more than one track.
+  bool IsGroup(std::int64_t thing) const;
+  /// In the last Update: things that became part of others (from, to).
+  const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
+
+ private:
+  struct Member {
+    std::int64_t thing = 0;
+    Utime stands_since;
+    bool is_attached = false;  // to land or a structure
+  };
+  void Join(std::int64_t from_thing, std::int64_t to_thing);
+
+  std::map<std::int64_t, Member> members_;  // by track
+  std::vector<std::pair<std::int64_t, std::int64_t>> merged_;
+};
+
+}  // namespace lookout::tracker

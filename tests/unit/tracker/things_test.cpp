@@ -1,0 +1,88 @@
+// Which tracks are one thing with others.
+#include "services/tracker/core/things.hpp"
+
+#include <chrono>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "services/tracker/core/danger.hpp"
+
+namespace lookout::tracker {
+namespace {
+
+// A box along the east axis.
+Track Standing(std::int64_t id, double east_m, double length_m, double north_m = 0.0) {
+  Track track;
+  track.id = id;
+  track.status = TrackStatus::kConfirmed;
+  track.kind = length_m > 20.0 ? TrackKind::kStructure : TrackKind::kObstacle;
+  track.position_m = {east_m, north_m};
+  track.rectangle.center_m = track.position_m;
+  track.rectangle.length_m = length_m;
+  track.rectangle.width_m = 1.0;
+  const double half_m = 0.5 * length_m;
+  track.outline_m = {
+      {east_m - half_m, north_m - 0.5}, {east_m + half_m, north_m - 0.5}, {east_m + half_m, north_m + 0.5}, {east_m - half_m, north_m + 0.5}};
+  return track;
+}
+
+class ThingsTest : public ::testing::Test {
+ protected:
+  void Scans(int num, const std::vector<Track>& tracks, const std::vector<Eigen::Vector2d>& shore_m = {}) {
+    for (int i = 0; i < num; ++i) {
+      things_.Update(time_ += std::chrono::milliseconds(100), tracks, shore_m);
+      merged_.insert(merged_.end(), things_.merged().begin(), things_.merged().end());
+    }
+  }
+
+  Utime time_{std::chrono::seconds(1'700'000'000)};
+  Things things_;
+  std::vector<std::pair<std::int64_t, std::int64_t>> merged_;
+};
+
+TEST_F(ThingsTest, OfAPierInPiecesAreOne) {
+  Scans(25, {Standing(3, 0.0, 10.0), Standing(5, 12.0, 10.0), Standing(6, 40.0, 10.0)});
+  EXPECT_EQ(things_.ThingOf(5), 3);
+  EXPECT_EQ(things_.ThingOf(3), 3);
+  EXPECT_EQ(things_.ThingOf(6), 6) << "18 m off";
+  EXPECT_TRUE(things_.IsGroup(3));
+  EXPECT_FALSE(things_.IsGroup(6));
+  EXPECT_EQ(merged_, (std::vector<std::pair<std::int64_t, std::int64_t>>{{5, 3}}));
+}
+
+TEST_F(ThingsTest, OfABoatAtItsPierIsThePierUntilItCastsOff) {
+  const auto pier = Standing(1, 0.0, 30.0);
+  auto boat = Standing(2, 0.0, 5.0, 3.0);
+  Scans(10, {pier, boat});
+  EXPECT_EQ(things_.ThingOf(2), 2) << "it may only stop there";
+  Scans(20, {pier, boat});
+  EXPECT_EQ(things_.ThingOf(2), 1);
+  boat.velocity_mps = {0.0, 0.8};
+  Scans(1, {pier, boat});
+  EXPECT_EQ(things_.ThingOf(2), 2);
+}
+
+TEST_F(ThingsTest, OfShoreWithAllThatStandsBesideItAreLand) {
+  std::vector<Eigen::Vector2d> shore_m;
+  for (double east_m = -20.0; east_m < 20.0; east_m += 0.5) shore_m.emplace_back(east_m, -2.0);
+  Scans(25, {Standing(1, 0.0, 6.0), Standing(2, 0.0, 9.0, 3.0), Standing(4, 0.0, 5.0, 20.0)}, shore_m);
+  EXPECT_EQ(things_.ThingOf(1), kLandTrack);
+  EXPECT_EQ(things_.ThingOf(2), kLandTrack) << "moored to it";
+  EXPECT_EQ(things_.ThingOf(4), 4);
+}
+
+TEST_F(ThingsTest, OfBuoysSideBySideAreTheirOwn) {
+  Scans(25, {Standing(1, 0.0, 0.6), Standing(2, 2.0, 0.6)});
+  EXPECT_EQ(things_.ThingOf(1), 1);
+  EXPECT_EQ(things_.ThingOf(2), 2);
+}
+
+TEST_F(ThingsTest, KeepTheirNameWhenTracksBecomeOne) {
+  Scans(25, {Standing(3, 0.0, 10.0), Standing(5, 12.0, 10.0)});
+  things_.Rename(3, 2);
+  EXPECT_EQ(things_.ThingOf(2), 2);
+  EXPECT_EQ(things_.ThingOf(5), 2);
+}
+
+}  // namespace
+}  // namespace lookout::tracker
