@@ -79,6 +79,13 @@ LookOutParams ToLookOut(const config::Tracker& message, const GuardZoneParams& z
   params.ability = {message.reaction_s(), message.deceleration_mps2(), DegToRad(message.turn_rate_degps())};
   params.limits.guard_zone = zone;
   params.limits.cpa_limit_m = message.cpa_limit_m();
+  params.limits.mode = static_cast<Mode>(message.mode());
+  params.limits.harbour_margin_m = message.harbour_margin_m();
+  params.limits.harbour_cpa_limit_m = message.harbour_cpa_limit_m();
+  params.limits.least_guard_zone_m = message.least_guard_zone_m();
+  params.limits.most_guard_zone_m = message.most_guard_zone_m();
+  params.limits.least_cpa_limit_m = message.least_cpa_limit_m();
+  params.limits.most_cpa_limit_m = message.most_cpa_limit_m();
   return params;
 }
 
@@ -95,6 +102,12 @@ Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file) 
   }
   if (message && message->end_probability() >= message->confirm_probability()) {
     faults.Add(config::FaultLine(file, "end_probability", "must be below confirm_probability"));
+  }
+  if (message && message->least_guard_zone_m() > message->most_guard_zone_m()) {
+    faults.Add(config::FaultLine(file, "least_guard_zone_m", "must not be above most_guard_zone_m"));
+  }
+  if (message && message->least_cpa_limit_m() > message->most_cpa_limit_m()) {
+    faults.Add(config::FaultLine(file, "least_cpa_limit_m", "must not be above most_cpa_limit_m"));
   }
   if (message && message->has_guard_zone() && message->guard_zone().to_bearing_deg() == message->guard_zone().from_bearing_deg()) {
     faults.Add(config::FaultLine(file, "guard_zone.to_bearing_deg", "must differ from from_bearing_deg"));

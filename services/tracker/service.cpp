@@ -259,6 +259,11 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
   }
   auto taken = std::exchange(orders_, {});
   for (const auto& order : taken) memory_->look_out.Take(order, input.end_time);
+  if (std::ranges::any_of(taken, [](const Order& order) { return order.kind == OrderKind::kSettings; })) {
+    auto params = params_.zone_sight;
+    params.zone = memory_->look_out.WholeZone();
+    memory_->zone_sight = ZoneSight(params);
+  }
   counts_["orders_taken"] += static_cast<std::int64_t>(taken.size());
   return taken;
 }

@@ -200,7 +200,8 @@ void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidenc
     TellFromPlace(alert, around.own);
     alert.cpa_m = alert.tcpa_s = alert.cpa_probability = alert.time_left_s = kNan;
   }
-  alert.sight = is_lost ? AlertSight::kLost : AlertSight::kSeen;
+  if (is_lost) alert.sight = AlertSight::kLost;
+  if (!is_lost && alert.sight == AlertSight::kLost) alert.sight = AlertSight::kSeen;
 }
 
 // What holds, in the words of this scan.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -22,6 +23,9 @@ constexpr double kOwnAverageS = 5.0;
 // A track that is no crest, rather than one.
 constexpr double kLikelyThing = 0.5;
 constexpr double kLikelyApproach = 0.5;
+// Drops of rain, spray and most crests are gone by then.
+constexpr double kStaysS = 0.8;
+constexpr std::chrono::milliseconds kSeenNow{300};
 
 std::vector<Eigen::Vector2d> InVessel(std::span<const Eigen::Vector2d> corners_map_m, const Pose& own) {
   const auto [sine, cosine] = SinCosOf(own.heading_rad);
@@ -149,13 +153,18 @@ class ShoreBearings {
 }  // namespace
 
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
-                                     const std::optional<Pose>& own, const Things& things) {
+                                     const std::optional<Pose>& own, const Things& things, Newcomers* newcomers, Utime time) {
   if (params.range_m <= 0.0) return {};
   std::map<std::int64_t, InZone> in_zone;  // of each thing, land and what has no name
+  std::vector<NearestPoint> unnamed;
   ShoreBearings shore(params);
   const auto add = [&](std::int64_t thing, const std::optional<NearestPoint>& point, const Track* track) {
     if (!point || point->range_m > params.range_m) return;
     const bool is_certain = params.takes_tentative || thing == kLandTrack || (track != nullptr && IsConfirmed(*track));
+    if (thing == kUnnamed && own && newcomers != nullptr && !is_certain) {
+      unnamed.push_back(*point);
+      return;
+    }
     const bool counts = is_certain || track == nullptr || !own || track->existence_probability >= kLikelyThing;
     in_zone[thing].Add(*point, track, is_certain, counts ? 1.0 : 0.0);
   };
@@ -176,6 +185,15 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
     if (thing != kLandTrack) continue;
     if (nearest) shore.Add(*nearest);
     shore.Add(outline.corners_m, !outline.is_line);
+  }
+  if (newcomers != nullptr) {
+    std::vector<DangerPlace> places;
+    places.reserve(unnamed.size());
+    for (const auto& point : unnamed) places.push_back(PlaceOf(point, own));
+    const auto ages_s = newcomers->Update(time, places);
+    for (std::size_t i = 0; i < unnamed.size(); ++i) {
+      if (ages_s[i] >= kStaysS) in_zone[kUnnamed].Add(unnamed[i], nullptr, false, 1.0);
+    }
   }
   if (own) {
     for (const auto& track : picture.tracks) {
@@ -208,7 +226,7 @@ bool StillWatch::Update(Utime time, const Eigen::Vector2d& velocity_mps) {
 }
 
 std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const Picture& picture, const std::optional<Pose>& own, bool is_own_still,
-                                           const Things& things) {
+                                           const Things& things, const Proof* proof, Utime time) {
   if (!own) return {};
   const double own_mps = own->velocity_map_mps.allFinite() ? own->velocity_map_mps.norm() : 0.0;
   const double needed_s = TimeToAct(own_mps, params.ability);
@@ -234,6 +252,11 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
                   .seen = track.seen,
                   .place_map_m = place.position_map_m};
     add_approach(track.approach, params.limit_m, danger);
+    if (proof != nullptr && !proof->IsProven(track)) {
+      if (!danger.is_grave || time - track.seen > kSeenNow) danger.probability = 0.0;
+      danger.is_grave = false;
+      danger.is_just_seen = true;
+    }
     if (danger.thing != track.id) danger.bearing_rad = place.bearing_rad;
     if (danger.probability >= kLikelyApproach && things.IsGroup(danger.thing)) places_of[danger.thing].push_back(place);
     dangers.push_back(std::move(danger));

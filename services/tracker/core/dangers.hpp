@@ -10,6 +10,8 @@
 #include "common/core/utime.hpp"
 #include "services/tracker/core/danger.hpp"
 #include "services/tracker/core/gatherer.hpp"
+#include "services/tracker/core/newcomers.hpp"
+#include "services/tracker/core/proof.hpp"
 #include "services/tracker/core/scan.hpp"
 #include "services/tracker/core/things.hpp"
 #include "services/tracker/core/tracker.hpp"
@@ -26,10 +28,12 @@ namespace lookout::tracker {
 /// To be in the zone is worth a look. To act on is what comes nearer than the limit (ClosestApproachDangers); only where the own pose or velocity is
 /// not known, so that nobody can tell, the zone warns.
 ///
-/// What is no confirmed track yet is just seen, and counts where it is likely to be a thing: crests are sure in single scans, too.
-/// @param own  placed, at the end of the scan
+/// What is no confirmed track yet is just seen: crests are sure in single scans, too. A tentative track counts where it is likely to be a thing, and
+/// what has no track where it has stayed for 0.8 s.
+/// @param own        placed, at the end of the scan
+/// @param newcomers  what of the zone had no track in the scans before; nullptr: all counts at once
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
-                                     const std::optional<Pose>& own, const Things& things = {});
+                                     const std::optional<Pose>& own, const Things& things = {}, Newcomers* newcomers = nullptr, Utime time = {});
 
 /// Whether the own boat lies still: its velocity over ground, averaged over some seconds, is below half a knot. So sway in the berth and the noise of
 /// the receiver are none, but a drift is.
@@ -52,8 +56,11 @@ struct ApproachParams {
 /// Confirmed and coasting tracks, and land on the boat's way. What leaves no more time than this boat needs to act is grave. Where the own boat lies
 /// still and the track stands, neither comes nearer to the other: of them only the guard zone speaks, so a boat in its berth has peace, while one
 /// that drifts down on a pile is warned.
-/// @param own  placed, at the end of the scan; nullopt: nobody knows how near anything will come
+///
+/// A fast course that is not proven counts only where waiting longer would be too late and while it is seen, and is just seen.
+/// @param own    placed, at the end of the scan; nullopt: nobody knows how near anything will come
+/// @param proof  nullptr: all are
 std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const Picture& picture, const std::optional<Pose>& own, bool is_own_still,
-                                           const Things& things = {});
+                                           const Things& things = {}, const Proof* proof = nullptr, Utime time = {});
 
 }  // namespace lookout::tracker

@@ -22,7 +22,7 @@ Limits LimitsOf(const LimitParams& params, const Settings& settings, double own_
   if (limits.mode == Mode::kHarbour) {
     const double way_m = own_mps * TimeToAct(own_mps, ability);
     zone.range_m = std::min(zone.range_m, way_m + params.harbour_margin_m);
-    limits.cpa_limit_m = std::min(limits.cpa_limit_m, std::max(params.harbour_least_cpa_m, 0.5 * way_m));
+    limits.cpa_limit_m = std::min(limits.cpa_limit_m, std::max(params.harbour_cpa_limit_m, 0.5 * way_m));
   }
   return limits;
 }

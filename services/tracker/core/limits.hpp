@@ -18,7 +18,7 @@ struct LimitParams {
   double most_cpa_limit_m = 500.0;
   // In harbour: beyond the way that is gone before the boat stops.
   double harbour_margin_m = 2.0;
-  double harbour_least_cpa_m = 1.0;
+  double harbour_cpa_limit_m = 1.0;  // the least
 };
 
 struct Limits {

@@ -46,10 +46,15 @@ class LookOut {
                                    const std::optional<Pose>& own, const std::optional<Danger>& unseen);
 
   void ForgetMap() { alerts_.ForgetMap(); }
-  void ForgetTracks() { things_.Clear(); }
+  void ForgetTracks() {
+    things_.Clear();
+    proof_.Clear();
+  }
 
   const std::vector<Alert>& alerts() const { return alerts_.alerts(); }
   const Limits& limits() const { return limits_; }
+  /// The guard zone as it is set, which does not shrink in harbour: of it somebody should see all.
+  GuardZoneParams WholeZone() const;
   std::int64_t sounding() const { return sounding_; }
   std::optional<Utime> silenced_until() const { return sound_.silenced_until(); }
 
@@ -59,6 +64,8 @@ class LookOut {
   Limits limits_;
   Things things_;
   std::vector<Eigen::Vector2d> shore_m_;  // as it was told last
+  Proof proof_;
+  Newcomers newcomers_;
   StillWatch still_;
   Alerts alerts_;
   Sound sound_;

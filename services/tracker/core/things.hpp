@@ -18,8 +18,8 @@ namespace lookout::tracker {
 class Things {
  public:
   static constexpr double kBesideM = 3.0;
-  /// A boat that only stops there is none of it.
-  static constexpr double kStandsS = 2.0;
+  /// Before an alert of it can come up. What moves is known to within a second, and leaves again.
+  static constexpr double kStandsS = 0.2;
 
   /// One scan. Call Rename of that scan before.
   /// @param shore_m  remembered land with water before it, on the map

@@ -33,17 +33,6 @@ constexpr std::chrono::seconds kThingKeptFor{1};
 // 72 bins of land and some acknowledgements of it; beyond, the oldest are forgotten, which rings.
 constexpr std::size_t kMostTold = 1000;
 
-Eigen::Vector2d InVessel(const DangerPlace& place) {
-  const auto [sine, cosine] = SinCosOf(place.bearing_rad);
-  return {place.range_m * cosine, -place.range_m * sine};
-}
-
-// On the map where both are known there, else as the vessel sees them.
-double DistanceOf(const DangerPlace& one, const DangerPlace& other) {
-  if (!one.position_map_m.hasNaN() && !other.position_map_m.hasNaN()) return (one.position_map_m - other.position_map_m).norm();
-  return (InVessel(one) - InVessel(other)).norm();
-}
-
 // Both ways, so that a time that goes back forgets too.
 bool IsWithin(Utime time, Utime since, std::chrono::microseconds longest) { return std::chrono::abs(time - since) <= longest; }
 
@@ -64,6 +53,15 @@ bool IsOnAnotherSide(double bearing_rad, double told_rad) {
 }
 
 }  // namespace
+
+double DistanceOf(const DangerPlace& one, const DangerPlace& other) {
+  if (!one.position_map_m.hasNaN() && !other.position_map_m.hasNaN()) return (one.position_map_m - other.position_map_m).norm();
+  const auto in_vessel = [](const DangerPlace& place) {
+    const auto [sine, cosine] = SinCosOf(place.bearing_rad);
+    return Eigen::Vector2d(place.range_m * cosine, -place.range_m * sine);
+  };
+  return (in_vessel(one) - in_vessel(other)).norm();
+}
 
 void ToldPlaces::Tell(Utime time, std::span<const DangerPlace> places) {
   // The person has just been told where they are by now.

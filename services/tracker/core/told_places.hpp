@@ -20,6 +20,9 @@ struct DangerPlace {
   Eigen::Vector2d position_map_m = Eigen::Vector2d::Constant(kNan);  // NaN: position or heading is not known
 };
 
+/// On the map where both are known there, else as the vessel sees them.
+double DistanceOf(const DangerPlace& one, const DangerPlace& other);
+
 /// Whether a danger is what a person has acknowledged. An acknowledgement covers the places that were told when it was given:
 ///
 /// - *Land* is covered where the place on the map is one that was told; since a quay goes on beside a boat that sails along it, where land was told

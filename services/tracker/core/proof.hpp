@@ -1,0 +1,41 @@
+// Whether a fast course has shown itself, or may be a ghost.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <span>
+
+#include "common/core/utime.hpp"
+#include "services/tracker/core/picture.hpp"
+
+namespace lookout::tracker {
+
+/// Where one of two pieces of a hull or a crest behind another is taken for the thing itself, it seems to run, as fast as both are apart, and is gone
+/// a second later. A boat gets where its course says that it gets. So what is faster than kFastMps is proven when it was seen for as long as a boat
+/// needs to gain that speed, a second at least, and has gone half of the way by then. Slower things leave time enough to be wrong about.
+class Proof {
+ public:
+  static constexpr double kFastMps = 2.0;
+  static constexpr double kLeastS = 1.0;
+  static constexpr double kMostS = 3.0;
+  /// A speedboat gains 25 kn in 4 s; small craft with an outboard less.
+  static constexpr double kGainMps2 = 4.0;
+
+  /// One scan. Call Rename of that scan before.
+  void Update(std::span<const Track> tracks);
+  void Rename(std::int64_t from_track, std::int64_t to_track);
+  void Clear() { courses_.clear(); }
+
+  bool IsProven(const Track& track) const;
+
+ private:
+  struct Course {
+    Utime begin;  // when it was seen to move first
+    Eigen::Vector2d begin_m = Eigen::Vector2d::Zero();
+    bool is_proven = false;
+  };
+  std::map<std::int64_t, Course> courses_;  // by track
+};
+
+}  // namespace lookout::tracker
