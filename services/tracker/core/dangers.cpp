@@ -21,11 +21,13 @@ constexpr double kOwnStillMps = 0.26;
 // Longer than a moored boat sways to one side, shorter than it takes to cast off.
 constexpr double kOwnAverageS = 5.0;
 // A track that is no crest, rather than one.
-constexpr double kLikelyThing = 0.5;
+constexpr double kLikelyThing = 0.65;
 constexpr double kLikelyApproach = 0.5;
 // Drops of rain, spray and most crests are gone by then.
 constexpr double kStaysS = 0.8;
 constexpr std::chrono::milliseconds kSeenNow{300};
+// What comes up so near to a known thing is a part of it until it is a track of its own.
+constexpr double kPartM = 2.0;
 
 std::vector<Eigen::Vector2d> InVessel(std::span<const Eigen::Vector2d> corners_map_m, const Pose& own) {
   const auto [sine, cosine] = SinCosOf(own.heading_rad);
@@ -97,6 +99,44 @@ Danger DangerOf(std::int64_t thing, const InZone& found, const std::vector<Neare
   return danger;
 }
 
+// Known things, to which what is no track yet may belong.
+class KnownThings {
+ public:
+  KnownThings(const Picture& picture, std::span<const VesselOutline> outlines, const Things& things, const Pose& own) {
+    for (const auto& track : picture.tracks) {
+      if (!IsConfirmed(track) || track.outline_m.empty() || track.range_m > kFarM) continue;
+      known_.push_back({things.ThingOf(track.id), &track, InVessel(track.outline_m, own)});
+    }
+    for (const auto& outline : outlines) {
+      if (outline.is_land) known_.push_back({kLandTrack, nullptr, outline.corners_m});
+    }
+  }
+
+  struct Known {
+    std::int64_t thing;
+    const Track* track;
+    std::vector<Eigen::Vector2d> corners_m;  // as the vessel sees it
+  };
+  // nullptr: it belongs to none.
+  const Known* Find(const NearestPoint& point) const {
+    const auto [sine, cosine] = SinCosOf(point.bearing_rad);
+    const Eigen::Vector2d place_m(point.range_m * cosine, -point.range_m * sine);
+    const Known* nearest = nullptr;
+    double least_m = kPartM;
+    for (const auto& known : known_) {
+      const double away_m = GapOf(known.corners_m, {&place_m, 1}).distance_m;
+      if (away_m > least_m) continue;
+      least_m = away_m;
+      nearest = &known;
+    }
+    return nearest;
+  }
+
+ private:
+  static constexpr double kFarM = 150.0;
+  std::vector<Known> known_;
+};
+
 // The nearest land of the zone in each bin of bearing: of what is land, an acknowledgement covers these.
 class ShoreBearings {
  public:
@@ -157,10 +197,19 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
   if (params.range_m <= 0.0) return {};
   std::map<std::int64_t, InZone> in_zone;  // of each thing, land and what has no name
   std::vector<NearestPoint> unnamed;
+  std::optional<KnownThings> known;
   ShoreBearings shore(params);
   const auto add = [&](std::int64_t thing, const std::optional<NearestPoint>& point, const Track* track) {
     if (!point || point->range_m > params.range_m) return;
     const bool is_certain = params.takes_tentative || thing == kLandTrack || (track != nullptr && IsConfirmed(*track));
+    const bool is_confirmed = track != nullptr && IsConfirmed(*track);
+    if (own && !is_certain && !is_confirmed) {
+      if (!known) known.emplace(picture, outlines, things, *own);
+      if (const auto* of = known->Find(*point)) {
+        in_zone[of->thing].Add(*point, of->track, true, 1.0);
+        return;
+      }
+    }
     if (thing == kUnnamed && own && newcomers != nullptr && !is_certain) {
       unnamed.push_back(*point);
       return;
@@ -252,7 +301,7 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
                   .seen = track.seen,
                   .place_map_m = place.position_map_m};
     add_approach(track.approach, params.limit_m, danger);
-    if (proof != nullptr && !proof->IsProven(track)) {
+    if (proof != nullptr && (Proof::IsYoung(track, time) || !proof->IsProven(track))) {
       if (!danger.is_grave || time - track.seen > kSeenNow) danger.probability = 0.0;
       danger.is_grave = false;
       danger.is_just_seen = true;

@@ -16,9 +16,10 @@ namespace lookout::tracker {
 /// needs to gain that speed, a second at least, and has gone half of the way by then. Slower things leave time enough to be wrong about.
 class Proof {
  public:
-  static constexpr double kFastMps = 2.0;
+  static constexpr double kFastMps = 1.0;
   static constexpr double kLeastS = 1.0;
   static constexpr double kMostS = 3.0;
+  static constexpr double kYoungS = 1.0;
   /// A speedboat gains 25 kn in 4 s; small craft with an outboard less.
   static constexpr double kGainMps2 = 4.0;
 
@@ -28,6 +29,8 @@ class Proof {
   void Clear() { courses_.clear(); }
 
   bool IsProven(const Track& track) const;
+  /// Seen for so short that it may be nothing, or of another size or speed.
+  static bool IsYoung(const Track& track, Utime time) { return ToSeconds(time - track.first) < kYoungS; }
 
  private:
   struct Course {

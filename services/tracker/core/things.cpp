@@ -19,10 +19,10 @@ bool IsStructure(const Track& track) { return track.kind == TrackKind::kStructur
 
 double RadiusOf(const Track& track) { return 0.5 * Eigen::Vector2d(track.rectangle.length_m, track.rectangle.width_m).norm(); }
 
-bool IsBeside(const Track& one, const Track& other) {
-  const double reach_m = RadiusOf(one) + RadiusOf(other) + Things::kBesideM;
+bool IsWithin(const Track& one, const Track& other, double gap_m) {
+  const double reach_m = RadiusOf(one) + RadiusOf(other) + gap_m;
   if ((one.rectangle.center_m - other.rectangle.center_m).squaredNorm() > reach_m * reach_m) return false;
-  return GapOf(one.outline_m, other.outline_m).distance_m <= Things::kBesideM;
+  return GapOf(one.outline_m, other.outline_m).distance_m <= gap_m;
 }
 
 bool IsBesideAny(const Track& track, std::span<const Eigen::Vector2d> places_m) {
@@ -43,7 +43,8 @@ void Things::Update(Utime time, std::span<const Track> tracks, std::span<const E
     if (!IsKnown(track) || !track.velocity_mps.isZero(0.0) || track.outline_m.empty()) continue;
     standing.push_back(&track);
     ids.insert(track.id);
-    members_.try_emplace(track.id, Member{track.id, time, false});
+    auto& member = members_.try_emplace(track.id, Member{track.id, time, false, false}).first->second;
+    member.is_of_structure = member.is_of_structure || IsStructure(track);
   }
   std::erase_if(members_, [&ids](const auto& item) { return !ids.contains(item.first); });
   for (const auto* track : standing) {
@@ -57,8 +58,8 @@ void Things::Update(Utime time, std::span<const Track> tracks, std::span<const E
     for (const auto* other : standing) {
       const auto& with = members_.at(other->id);
       if (with.thing == own.thing) continue;
-      const bool belongs = with.thing == kLandTrack || with.is_attached || IsStructure(*other);
-      if (!belongs || !IsBeside(*track, *other)) continue;
+      const bool belongs = with.thing == kLandTrack || with.is_of_structure;
+      if (!IsWithin(*track, *other, belongs ? kBesideM : kTouchM)) continue;
       Join(std::max(own.thing, with.thing), std::min(own.thing, with.thing));
     }
   }
@@ -66,10 +67,13 @@ void Things::Update(Utime time, std::span<const Track> tracks, std::span<const E
 
 void Things::Join(std::int64_t from_thing, std::int64_t to_thing) {
   if (from_thing == to_thing) return;
+  const auto is_of_both = [&](const auto& item) { return item.second.thing == from_thing || item.second.thing == to_thing; };
+  const bool is_of_structure = std::ranges::any_of(members_, [&](const auto& item) { return is_of_both(item) && item.second.is_of_structure; });
   for (auto& [track, member] : members_) {
     if (member.thing != from_thing && member.thing != to_thing) continue;
     member.thing = to_thing;
-    member.is_attached = true;
+    member.is_joined = true;
+    member.is_of_structure = is_of_structure;
   }
   merged_.emplace_back(from_thing, to_thing);
 }
@@ -101,7 +105,7 @@ std::int64_t Things::ThingOf(std::int64_t track_id) const {
 
 bool Things::IsGroup(std::int64_t thing) const {
   return thing == kLandTrack ||
-         std::ranges::any_of(members_, [thing](const auto& item) { return item.second.thing == thing && item.second.is_attached; });
+         std::ranges::any_of(members_, [thing](const auto& item) { return item.second.thing == thing && item.second.is_joined; });
 }
 
 }  // namespace lookout::tracker

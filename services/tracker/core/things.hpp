@@ -13,11 +13,13 @@
 namespace lookout::tracker {
 
 /// A pier in pieces is one thing, and so is a quay with all that is moored to it: what stands for a while within kBesideM of land, or of what belongs
-/// to land, belongs to it; and what stands beside a structure belongs to that. Once it does it stays so, since outlines and kinds flicker, until it
-/// moves or is no track any more. So a boat that casts off is a thing of its own.
+/// to land, belongs to it; what stands beside a structure belongs to that, and of any two that stand side by side the one to the other. Once it does
+/// it stays so, since outlines and kinds flicker, until it moves or is no track any more. So a boat that casts off is a thing of its own.
 class Things {
  public:
   static constexpr double kBesideM = 3.0;
+  /// Of any two that stand: nobody steers between them.
+  static constexpr double kTouchM = 1.0;
   /// Before an alert of it can come up. What moves is known to within a second, and leaves again.
   static constexpr double kStandsS = 0.2;
 
@@ -38,7 +40,8 @@ class Things {
   struct Member {
     std::int64_t thing = 0;
     Utime stands_since;
-    bool is_attached = false;  // to land or a structure
+    bool is_joined = false;        // with others, or land
+    bool is_of_structure = false;  // it is one, or of one
   };
   void Join(std::int64_t from_thing, std::int64_t to_thing);
 
