@@ -23,6 +23,7 @@ constexpr std::size_t kApproach = static_cast<std::size_t>(AlertCause::kClosestA
 constexpr std::size_t kWatch = static_cast<std::size_t>(AlertCause::kWatch) - 1;
 // What has no track is shown for so long after it was seen last.
 constexpr std::chrono::milliseconds kSeenFor{500};
+constexpr double kPassedS = 1.0;
 // How far off a lost thing may be by now, for each second.
 constexpr double kMovedOnMps = 0.5;
 
@@ -161,18 +162,22 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
   // It may be hidden, and is not abaft yet.
   const bool may_be_there =
       entry.lost && entry.lost->is_hidden && ToSeconds(time - entry.lost->since) < kHiddenS && !IsAbaft(entry.alert->bearing_rad);
+  // It opens abaft: there is nothing to wait for.
+  const bool has_passed =
+      entry.HasAlert() && IsAbaft(entry.alert->bearing_rad) && evidence[kApproach] != nullptr && evidence[kApproach]->tcpa_s == 0.0;
+  const double clear_s = has_passed ? std::min(params_.clear_s, kPassedS) : params_.clear_s;
   bool says_warning = false;
   bool says_no_warning = true;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     const double probability = evidence[i] == nullptr ? 0.0 : evidence[i]->probability;
     const bool says_on = probability >= params_.raise_probability;
     const bool says_off = !(probability >= params_.clear_probability) && !may_be_there;
-    entry.causes[i].Update(time, is_whole, says_on, says_off, params_.clear_s);
+    entry.causes[i].Update(time, is_whole, says_on, says_off, clear_s);
     const bool is_grave = evidence[i] != nullptr && evidence[i]->is_grave;
     says_warning = says_warning || (says_on && is_grave);
     says_no_warning = says_no_warning && !(is_grave && probability >= params_.clear_probability);
   }
-  entry.warning.Update(time, is_whole, says_warning, says_no_warning, params_.clear_s);
+  entry.warning.Update(time, is_whole, says_warning, says_no_warning, clear_s);
   Advance(entry, thing, time);
   if (!entry.HasAlert() || !entry.alert->Holds()) return;
   Tell(entry, evidence);

@@ -79,8 +79,8 @@ struct Surroundings {
 /// The thing is what is alerted: guard zone and closest approach are causes of one alert, which is as grave as the graver.
 ///
 /// Time goes by the message time of scans. On and off have hysteresis, and so has the level: what says "on" or "warning" must do so in 3 of the last
-/// 5 scans, and must not for clear_s and 5 whole scans. A scan that is not whole clears nothing, but what it shows counts; scans older than 1 s count
-/// neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
+/// 5 scans, and must not for clear_s (1 s of what opens abaft) and 5 whole scans. A scan that is not whole clears nothing, but what it shows counts;
+/// scans older than 1 s count neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
 ///
 /// A thing whose track is gone is lost. Its alert stays where it was seen last: until clear_s where it was looked for and is not there, or is abaft
 /// by now; else, since it may be hidden, for kHiddenS. What comes up again within kSameS, by its name or beside where it was last, is the same alert.

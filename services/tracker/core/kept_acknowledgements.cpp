@@ -76,7 +76,8 @@ std::vector<Acknowledgement> KeptAcknowledgements::Take(Utime time, const Datum&
     });
     if (same == kept_.end()) continue;
     taken.push_back({time, "tracker", alert.id, alert.raised});
-    kept_.erase(same);
+    // As a caution it may be one that is just seen, and rises.
+    if (alert.level == same->level) kept_.erase(same);
   }
   return taken;
 }

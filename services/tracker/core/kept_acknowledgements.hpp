@@ -28,7 +28,7 @@ class KeptAcknowledgements {
   /// yet. What is kept of the same thing, the nearest, is replaced.
   void Keep(Utime time, const Datum& datum, std::span<const Alert> alerts, std::span<const Track> tracks);
 
-  /// With a scan: acknowledgements for the alerts that came up since. Each that is kept counts once, and on the map of its datum alone.
+  /// With a scan: acknowledgements for the alerts that came up since. Each that is kept counts once at its level, and on the map of its datum alone.
   std::vector<Acknowledgement> Take(Utime time, const Datum& datum, std::span<const Alert> alerts, std::span<const Track> tracks);
 
  private:

@@ -128,5 +128,26 @@ TEST(AcknowledgementCheck, RefusesByTheRightCounter) {
   EXPECT_EQ(FaultOf(message), kAckTime);
 }
 
+TEST(OrderChecks, RefuseWhatCannotBe) {
+  order_t message{};
+  message.source = "page";
+  EXPECT_EQ(FaultOf(message), kOrderKind);
+  message.kind = order_t::KIND_SILENCE;
+  EXPECT_EQ(FaultOf(message), std::nullopt);
+  message.kind = order_t::KIND_SETTINGS;
+  EXPECT_EQ(FaultOf(message), kOrderKind) << "no mode";
+  message.mode = order_t::MODE_HARBOUR;
+  message.guard_zone_range_m = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(FaultOf(message), std::nullopt) << "as the config says";
+  message.cpa_limit_m = -1.0F;
+  EXPECT_EQ(FaultOf(message), kOrderNumber);
+  message.cpa_limit_m = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(FaultOf(message), kOrderNumber);
+  message.source = std::string(65, 'a');
+  EXPECT_EQ(FaultOf(message), kOrderSource);
+  message.utime_us = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(FaultOf(message), kOrderTime);
+}
+
 }  // namespace
 }  // namespace lookout::messages

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -235,6 +236,31 @@ TEST_F(LiveRun, TakesAcknowledgementsWithTheScansWithWhichTheyWereTaken) {
   int num_taken = 0;
   for (const auto& bytes : live_.at("ALERTS")) num_taken += bus::Decode<alerts_t>(bytes).value().num_acknowledged;
   EXPECT_GE(num_taken, 1);
+  ExpectReplayEqualsLive();
+}
+
+// Silence and another mode: which scan they came with no input tells.
+TEST_F(LiveRun, TakesOrdersWithTheScansWithWhichTheyWereTaken) {
+  Start();
+  for (int i = 0; i < 150; ++i) {
+    SendScan(i);
+    if (i % 40 != 20) continue;
+    order_t order{};
+    order.utime_us = i;
+    order.seq = i;
+    order.source = "page";
+    order.kind = order_t::KIND_SILENCE;
+    if (i % 80 == 20) order.kind = order_t::KIND_SETTINGS;
+    order.mode = order_t::MODE_HARBOUR;
+    order.guard_zone_range_m = 30.0F;
+    order.guard_zone_from_rad = order.guard_zone_to_rad = order.cpa_limit_m = std::numeric_limits<float>::quiet_NaN();
+    Deliver(bus::kOrders, order);
+    Record("ORDERS", bus::Encode(order));
+  }
+  int num_taken = 0;
+  for (const auto& bytes : live_.at("ALERTS")) num_taken += bus::Decode<alerts_t>(bytes).value().num_orders;
+  EXPECT_EQ(num_taken, 4);
+  EXPECT_EQ(bus::Decode<alerts_t>(live_.at("ALERTS").back()).value().mode, std::int32_t{order_t::MODE_HARBOUR});
   ExpectReplayEqualsLive();
 }
 

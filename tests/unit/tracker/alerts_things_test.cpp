@@ -192,6 +192,18 @@ TEST_F(AlertsOfTracks, EndSoonOfWhatIsGoneOrAbaft) {
   EXPECT_EQ(Only().end, AlertEnd::kPassed);
 }
 
+TEST_F(AlertsOfTracks, EndASecondAfterAThingHasPassed) {
+  Show({Known(7)});
+  auto passing = At(7, 3.0, 4.0);
+  Scans(5, {passing});
+  passing.probability = 0.0;
+  passing.tcpa_s = 0.0;
+  passing.bearing_rad = DegToRad(120.0);
+  Scans(11, {passing});
+  EXPECT_EQ(Only().state, AlertState::kCleared);
+  EXPECT_EQ(Only().end, AlertEnd::kPassed);
+}
+
 TEST_F(AlertsOfTracks, GoOnUnderTheNumberUnderWhichAThingIsFoundAgain) {
   Show({Known(7)});
   Scans(5, {At(7, 0.0, 20.0)});

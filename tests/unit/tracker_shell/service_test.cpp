@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 #include <set>
 #include <string>
@@ -455,6 +456,36 @@ TEST_F(TrackerService, DropsAcknowledgementsOfNoAlertAndOfAnotherRun) {
   acknowledgement.alert_id = 78;
   for (int i = 0; i < 150; ++i) Send(bus::kAlertAck, acknowledgement);
   EXPECT_EQ(Count("acks_dropped"), 50);
+}
+
+TEST_F(TrackerService, TakesOrdersWithTheNextScanAndRepeatsThem) {
+  SendPoses(0, 1'000'000);
+  SendScan(0, 0);
+  order_t order{};
+  order.source = "page";
+  order.kind = order_t::KIND_SETTINGS;
+  order.mode = order_t::MODE_OPEN_WATER;
+  order.guard_zone_range_m = 12.0F;
+  order.guard_zone_from_rad = order.guard_zone_to_rad = std::numeric_limits<float>::quiet_NaN();
+  order.cpa_limit_m = 3.0F;
+  Send(bus::kOrders, order);
+  order.mode = 7;
+  Send(bus::kOrders, order);
+  order.kind = order_t::KIND_SILENCE;
+  Send(bus::kOrders, order);
+  SendScan(1, 1);
+  SendScan(2, 2);
+  EXPECT_EQ(alerts_.at(0).cpa_limit_m, 5.0F);
+  EXPECT_EQ(alerts_.at(0).silenced_until_utime_us, 0);
+  ASSERT_EQ(alerts_.at(1).num_orders, 2);
+  EXPECT_EQ(alerts_.at(1).orders[0].cpa_limit_m, 3.0F);
+  EXPECT_EQ(alerts_.at(1).cpa_limit_m, 3.0F);
+  EXPECT_EQ(alerts_.at(1).guard_zone_range_m, 12.0F);
+  EXPECT_EQ(alerts_.at(1).silenced_until_utime_us, alerts_.at(1).end_utime_us + 30'000'000);
+  EXPECT_EQ(alerts_.at(2).num_orders, 0);
+  EXPECT_EQ(alerts_.at(2).cpa_limit_m, 3.0F) << "until the next order";
+  EXPECT_EQ(Count("orders_taken"), 2);
+  EXPECT_EQ(Count("orders_refused_kind"), 1);
 }
 
 // Lidar begins anew: the buoy ahead gets another track and another alert, of which nobody has to take note again.
