@@ -26,6 +26,8 @@ constexpr std::chrono::milliseconds kSeenFor{500};
 constexpr double kPassedS = 1.0;
 // How far off a lost thing may be by now, for each second.
 constexpr double kMovedOnMps = 0.5;
+// How long before the end of the old track, or before the alert of what had no name, the new one may have begun.
+constexpr std::chrono::seconds kBeganBefore{2};
 
 void SetState(Alert& alert, AlertState state, Utime time) {
   if (alert.state != state) alert.changed = time;
@@ -370,7 +372,9 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
     const auto& [other, entry] = *item;
     if (!entry.alert || entry.alert->place_map_m.hasNaN()) continue;
     const bool is_free = IsOfTrack(other) ? entry.lost || entry.is_over : other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
-    if (!is_free) continue;
+    // Something else that comes by there was seen before.
+    const Utime since = IsOfTrack(other) ? entry.alert->seen : entry.alert->raised;
+    if (!is_free || danger.first < since - kBeganBefore) continue;
     const double since_s = std::fabs(ToSeconds(time - entry.alert->seen));
     const double away_m = (entry.alert->place_map_m - danger.place_map_m).norm() - kMovedOnMps * since_s;
     if (away_m > least_m) continue;

@@ -92,6 +92,7 @@ Danger DangerOf(std::int64_t thing, const InZone& found, const std::vector<Neare
   if (found.track != nullptr) {
     danger.nearest_track = found.track->id;
     danger.kind = found.track->kind;
+    danger.first = found.track->first;
     danger.seen = found.track->seen;
   }
   danger.places.reserve(places.size());
@@ -201,7 +202,8 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
   ShoreBearings shore(params);
   const auto add = [&](std::int64_t thing, const std::optional<NearestPoint>& point, const Track* track) {
     if (!point || point->range_m > params.range_m) return;
-    const bool is_certain = params.takes_tentative || thing == kLandTrack || (track != nullptr && IsConfirmed(*track));
+    const bool is_certain =
+        params.takes_tentative || thing == kLandTrack || (track != nullptr && (IsConfirmed(*track) || Proof::Lasts(*track, time)));
     const bool is_confirmed = track != nullptr && IsConfirmed(*track);
     if (own && !is_certain && !is_confirmed) {
       if (!known) known.emplace(picture, outlines, things, *own);
@@ -290,7 +292,8 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
   std::vector<Danger> dangers;
   std::map<std::int64_t, std::vector<DangerPlace>> places_of;  // of things of several tracks: all that are likely to come too near
   for (const auto& track : picture.tracks) {
-    if (!IsConfirmed(track)) continue;
+    const bool lasts = proof != nullptr && Proof::Lasts(track, time);
+    if (!IsConfirmed(track) && !lasts) continue;
     if (is_own_still && track.velocity_mps.isZero(0.0)) continue;
     const auto place = PlaceOf(track, *own);
     Danger danger{.cause = AlertCause::kClosestApproach,
@@ -298,6 +301,7 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
                   .nearest_track = track.id,
                   .kind = track.kind,
                   .bearing_rad = track.bearing_rad,
+                  .first = track.first,
                   .seen = track.seen,
                   .place_map_m = place.position_map_m};
     add_approach(track.approach, params.limit_m, danger);

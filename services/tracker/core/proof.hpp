@@ -31,6 +31,10 @@ class Proof {
   bool IsProven(const Track& track) const;
   /// Seen for so short that it may be nothing, or of another size or speed.
   static bool IsYoung(const Track& track, Utime time) { return ToSeconds(time - track.first) < kYoungS; }
+  /// Seen for longer than most crests live, and likelier a thing than one: what is tentative still counts as if it were confirmed.
+  static bool Lasts(const Track& track, Utime time) {
+    return track.status == TrackStatus::kTentative && track.existence_probability >= 0.5 && ToSeconds(time - track.first) >= kMostS;
+  }
 
  private:
   struct Course {

@@ -135,7 +135,7 @@ class AlertsOfTracks : public AlertsTest {
   Danger At(std::int64_t id, double east_m, double north_m) const {
     auto danger = Cpa(id, 0.9);
     danger.place_map_m = {east_m, north_m};
-    danger.seen = time_;
+    danger.first = danger.seen = time_;
     return danger;
   }
 
@@ -220,6 +220,24 @@ TEST_F(AlertsOfTracks, GoOnUnderTheNumberUnderWhichAThingIsFoundAgain) {
   EXPECT_EQ(same->sight, AlertSight::kSeen);
 }
 
+// A motor boat that comes by where an acknowledged buoy was lost is no buoy.
+TEST_F(AlertsOfTracks, DoNotPassToWhatWasSeenElsewhereBefore) {
+  Show({Known(7), Known(9)});
+  Scans(5, {At(7, 0.0, 20.0)});
+  EXPECT_TRUE(Acknowledge(Only()));
+  const auto long_ago = time_ - std::chrono::seconds(5);
+  Show({Known(7, TrackStatus::kLost), Known(9)});
+  Scans(20, {});
+  auto boat = At(9, 1.0, 19.0);
+  boat.first = long_ago;
+  Show({Known(9)});
+  Scans(5, {boat});
+  const auto other = std::ranges::find(alerts_.alerts(), 9, &Alert::thing);
+  ASSERT_NE(other, alerts_.alerts().end());
+  EXPECT_EQ(other->state, AlertState::kActive);
+  EXPECT_EQ(other->id, 2);
+}
+
 TEST_F(AlertsOfTracks, KeepWhatHadNoNameWhenItGetsOne) {
   auto unnamed = Zone(kUnnamed);
   unnamed.place_map_m = {1.0, 7.0};
@@ -228,6 +246,7 @@ TEST_F(AlertsOfTracks, KeepWhatHadNoNameWhenItGetsOne) {
   Show({Known(3)});
   auto named = Zone(3);
   named.place_map_m = {1.3, 6.5};
+  named.first = time_;
   Scans(50, {named});
   EXPECT_EQ(Only().thing, 3);
   EXPECT_EQ(Only().id, 1);

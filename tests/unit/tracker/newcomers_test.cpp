@@ -96,6 +96,7 @@ TEST_F(LookOutTest, SaysNothingOfACrestInTheZone) {
     auto track = At(-7, 0.0, 6.0, TrackStatus::kTentative);
     track.segment_ids = {1};
     track.existence_probability = 0.4;
+    track.first = time_ - std::chrono::seconds(1);
     ASSERT_TRUE(Scan({track}, {Sure(6.0)}).empty()) << i;
   }
 }
@@ -111,6 +112,7 @@ TEST_F(LookOutTest, TellsOfASwimmerWhoComesUpWithinASecondAndAHalf) {
   // He stays: a track, and the boat comes nearer.
   auto swimmer = At(4, 0.0, 6.0);
   swimmer.segment_ids = {1};
+  swimmer.first = kBegin;
   swimmer.approach = {.distance_m = 4.5, .cpa_m = 0.0, .tcpa_s = 4.5, .probability = 1.0};
   for (int i = 0; i < 5; ++i) Scan({swimmer}, {Sure(6.0)});
   ASSERT_EQ(look_out_.alerts().size(), 1U) << "the same alert";
