@@ -20,8 +20,6 @@ namespace {
 constexpr double kOwnStillMps = 0.26;
 // Longer than a moored boat sways to one side, shorter than it takes to cast off.
 constexpr double kOwnAverageS = 5.0;
-// A track that is no crest, rather than one.
-constexpr double kLikelyThing = 0.65;
 constexpr double kLikelyApproach = 0.5;
 // Drops of rain, spray and most crests are gone by then.
 constexpr double kStaysS = 0.8;
@@ -216,7 +214,7 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
       unnamed.push_back(*point);
       return;
     }
-    const bool counts = is_certain || track == nullptr || !own || track->existence_probability >= kLikelyThing;
+    const bool counts = is_certain || track == nullptr || !own || track->existence_probability >= Proof::kLikely;
     in_zone[thing].Add(*point, track, is_certain, counts ? 1.0 : 0.0);
   };
 

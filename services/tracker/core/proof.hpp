@@ -20,6 +20,8 @@ class Proof {
   static constexpr double kLeastS = 1.0;
   static constexpr double kMostS = 3.0;
   static constexpr double kYoungS = 1.0;
+  /// Existence of a tentative track that is no crest, rather than one.
+  static constexpr double kLikely = 0.65;
   /// A speedboat gains 25 kn in 4 s; small craft with an outboard less.
   static constexpr double kGainMps2 = 4.0;
 
@@ -33,7 +35,7 @@ class Proof {
   static bool IsYoung(const Track& track, Utime time) { return ToSeconds(time - track.first) < kYoungS; }
   /// Seen for longer than most crests live, and likelier a thing than one: what is tentative still counts as if it were confirmed.
   static bool Lasts(const Track& track, Utime time) {
-    return track.status == TrackStatus::kTentative && track.existence_probability >= 0.5 && ToSeconds(time - track.first) >= kMostS;
+    return track.status == TrackStatus::kTentative && track.existence_probability >= kLikely && ToSeconds(time - track.first) >= kMostS;
   }
 
  private:
