@@ -22,7 +22,7 @@ constexpr std::size_t kZone = static_cast<std::size_t>(AlertCause::kGuardZone) -
 constexpr std::size_t kApproach = static_cast<std::size_t>(AlertCause::kClosestApproach) - 1;
 constexpr std::size_t kWatch = static_cast<std::size_t>(AlertCause::kWatch) - 1;
 // What has no track is shown for so long after it was seen last.
-constexpr std::chrono::milliseconds kSeenFor{500};
+constexpr std::chrono::milliseconds kShownFor{500};
 constexpr double kPassedS = 1.0;
 // How far off a lost thing may be by now, for each second.
 constexpr double kMovedOnMps = 0.5;
@@ -41,12 +41,12 @@ void SetLevel(Alert& alert, AlertLevel level, Utime time) {
 }
 
 // What is not known comes last.
-double Known(double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; }
+double LastIfUnknown(double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; }
 
 bool IsToldBefore(const Alert& a, const Alert& b) {
   const auto rank = [](const Alert& alert) {
-    const double soon_s = Known(std::isnan(alert.time_left_s) ? alert.tcpa_s : alert.time_left_s);
-    return std::tuple(!alert.Holds(), alert.level != AlertLevel::kWarning, alert.state, soon_s, Known(alert.distance_m), alert.id);
+    const double soon_s = LastIfUnknown(std::isnan(alert.time_left_s) ? alert.tcpa_s : alert.time_left_s);
+    return std::tuple(!alert.Holds(), alert.level != AlertLevel::kWarning, alert.state, soon_s, LastIfUnknown(alert.distance_m), alert.id);
   };
   return rank(a) < rank(b);
 }
@@ -76,8 +76,8 @@ bool IsGraver(const Danger& one, const Danger& other) {
   constexpr double kLikely = 0.5;
   const auto rank = [](const Danger& danger) {
     const bool is_likely = danger.probability >= kLikely;
-    return std::tuple(!is_likely, !danger.is_grave, is_likely ? 0.0 : -danger.probability, Known(danger.time_left_s), Known(danger.distance_m),
-                      danger.nearest_track);
+    return std::tuple(!is_likely, !danger.is_grave, is_likely ? 0.0 : -danger.probability, LastIfUnknown(danger.time_left_s),
+                      LastIfUnknown(danger.distance_m), danger.nearest_track);
   };
   return rank(one) < rank(other);
 }
@@ -201,7 +201,7 @@ void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidenc
     if (is_there) entry.lost.reset();
     if (!is_there && !entry.lost) entry.lost = Lost{time, entry.was_likely};
   }
-  const bool is_lost = entry.lost || (thing == kUnnamed && !is_told && time - alert.seen > kSeenFor);
+  const bool is_lost = entry.lost || (thing == kUnnamed && !is_told && time - alert.seen > kShownFor);
   if (is_lost) alert.nearest_track = kLandTrack;
   if (is_lost || !is_told) {
     TellFromPlace(alert, around.own);

@@ -14,19 +14,19 @@ namespace {
 // Longer than the boats around: a piece of a pier, a barge.
 constexpr double kLongM = 8.0;
 
-bool IsKnown(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
+bool IsTracked(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
 bool IsStructure(const Track& track) { return track.kind == TrackKind::kStructure || track.rectangle.length_m >= kLongM; }
 
-double RadiusOf(const Track& track) { return 0.5 * Eigen::Vector2d(track.rectangle.length_m, track.rectangle.width_m).norm(); }
+double ReachOf(const Track& track) { return 0.5 * Eigen::Vector2d(track.rectangle.length_m, track.rectangle.width_m).norm(); }
 
 bool IsWithin(const Track& one, const Track& other, double gap_m) {
-  const double reach_m = RadiusOf(one) + RadiusOf(other) + gap_m;
+  const double reach_m = ReachOf(one) + ReachOf(other) + gap_m;
   if ((one.rectangle.center_m - other.rectangle.center_m).squaredNorm() > reach_m * reach_m) return false;
   return GapOf(one.outline_m, other.outline_m).distance_m <= gap_m;
 }
 
 bool IsBesideAny(const Track& track, std::span<const Eigen::Vector2d> places_m) {
-  const double reach_m = RadiusOf(track) + Things::kBesideM;
+  const double reach_m = ReachOf(track) + Things::kBesideM;
   return std::ranges::any_of(places_m, [&](const Eigen::Vector2d& place_m) {
     return (place_m - track.rectangle.center_m).squaredNorm() <= reach_m * reach_m &&
            GapOf(track.outline_m, {&place_m, 1}).distance_m <= Things::kBesideM;
@@ -38,9 +38,10 @@ bool IsBesideAny(const Track& track, std::span<const Eigen::Vector2d> places_m) 
 void Things::Update(Utime time, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
   merged_.clear();
   std::vector<const Track*> standing;
+  standing.reserve(tracks.size());
   std::set<std::int64_t> ids;
   for (const auto& track : tracks) {
-    if (!IsKnown(track) || !track.velocity_mps.isZero(0.0) || track.outline_m.empty()) continue;
+    if (!IsTracked(track) || !track.velocity_mps.isZero(0.0) || track.outline_m.empty()) continue;
     standing.push_back(&track);
     ids.insert(track.id);
     auto& member = members_.try_emplace(track.id, Member{track.id, time, false, false}).first->second;
