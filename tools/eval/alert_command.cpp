@@ -50,7 +50,7 @@ AlertRules RulesOf(const fs::path& config_folder) {
   AlertRules rules;
   rules.cpa_limit_m = params.tracker.encounter.limit_m;
   rules.look_ahead_s = params.tracker.encounter.look_ahead_s;
-  rules.zone = params.guard_zone;
+  rules.zone = params.look_out.limits.guard_zone;
   return rules;
 }
 

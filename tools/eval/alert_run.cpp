@@ -13,8 +13,8 @@ namespace lookout::eval {
 JudgedAlert ToJudgedAlert(const alert_t& alert) {
   JudgedAlert judged;
   judged.id = alert.id;
-  judged.is_of_zone = alert.cause == alert_t::CAUSE_GUARD_ZONE;
-  judged.is_of_approach = alert.cause == alert_t::CAUSE_CLOSEST_APPROACH;
+  judged.is_of_zone = alert.is_in_zone != 0;
+  judged.is_of_approach = alert.comes_near != 0;
   judged.is_warning = alert.level == alert_t::LEVEL_WARNING;
   judged.holds = alert.state == alert_t::STATE_ACTIVE || alert.state == alert_t::STATE_ACKNOWLEDGED;
   judged.is_open = alert.state == alert_t::STATE_ACTIVE;

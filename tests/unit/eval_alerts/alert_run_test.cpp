@@ -83,6 +83,8 @@ alert_t AlertOf(std::int64_t id, std::int32_t cause, std::int64_t track_id) {
   alert_t alert{};
   alert.id = id;
   alert.cause = cause;
+  alert.is_in_zone = cause == alert_t::CAUSE_GUARD_ZONE ? 1 : 0;
+  alert.comes_near = cause == alert_t::CAUSE_CLOSEST_APPROACH ? 1 : 0;
   alert.level = alert_t::LEVEL_CAUTION;
   alert.state = alert_t::STATE_ACTIVE;
   alert.track_id = track_id;
