@@ -104,6 +104,7 @@ void Run(lookout::runtime::Process& process, const Config& config) {
   Faults faults;
   faults.boat = config.boat_fault;
   page::AcknowledgementQueue acknowledgements;
+  page::OrderQueue orders;
   page::ServerOptions options{.bind_address = params.bind_address,
                               .port = params.port,
                               .waits_for_port = true,
@@ -120,6 +121,7 @@ void Run(lookout::runtime::Process& process, const Config& config) {
   page::ServerParts parts;
   parts.assets = page::Assets();
   parts.acknowledge = [&acknowledgements](const page::Acknowledgement& acknowledgement) { acknowledgements.Push(acknowledgement); };
+  parts.order = [&orders](const page::Order& order) { orders.Push(order); };
   if (!params.map_file.empty()) {
     if (const auto tiles = OpenOrTell(faults.map, [&] { return std::make_shared<page::Tiles>(params.map_file); })) {
       parts.tiles_text = [tiles] { return tiles->text(); };
@@ -137,7 +139,7 @@ void Run(lookout::runtime::Process& process, const Config& config) {
   const auto token = options.token;
   page::Server server(std::move(options), std::move(parts));
   const page::ServerLink::Holder holder(link, server);
-  page::ServiceParts service_parts{.server = server, .acknowledgements = acknowledgements, .now = HostNow};
+  page::ServiceParts service_parts{.server = server, .acknowledgements = acknowledgements, .orders = orders, .now = HostNow};
   service_parts.add_to_report = [&](lookout::HealthReport& report) { AddTo(report, faults, server, look_back.get()); };
   if (look_back) {
     service_parts.keep = [look_back](lookout::Utime time, std::string_view channel, lookout::Bytes message) {

@@ -1,6 +1,8 @@
 #include "services/page/service.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <numbers>
 
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/attitude_t.hpp"
@@ -10,6 +12,7 @@
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/map_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "lookout/order_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/run_info_t.hpp"
 #include "lookout/segments_t.hpp"
@@ -21,8 +24,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// An acknowledgement that was sent takes effect with the next scan: the same one again is none.
+// What was sent takes effect with the next scan: the same again is none.
 constexpr auto kAcknowledgedFor = 1s;
+constexpr auto kOrderedFor = 1s;
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+float ToWire(const std::optional<double>& value, double factor = 1.0) {
+  return value ? static_cast<float>(*value * factor) : std::numeric_limits<float>::quiet_NaN();
+}
 
 ChannelIndex IndexOf(const bus::Channel& channel) {
   const auto& names = ChannelNames();
@@ -43,25 +52,6 @@ int PartOf(const T& message) {
 }
 
 }  // namespace
-
-void AcknowledgementQueue::Push(const Acknowledgement& acknowledgement) {
-  const std::lock_guard lock(mutex_);
-  if (waiting_.size() < kMost) {
-    waiting_.push_back(acknowledgement);
-  } else {
-    ++num_dropped_;
-  }
-}
-
-std::vector<Acknowledgement> AcknowledgementQueue::TakeAll() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(waiting_, {});
-}
-
-std::int64_t AcknowledgementQueue::num_dropped() const {
-  const std::lock_guard lock(mutex_);
-  return num_dropped_;
-}
 
 Service::Service(bus::Bus& bus, ServiceParts parts) : bus_(bus), parts_(std::move(parts)) {
   Forward<lidar_scan_t>(bus::kLidarScan);
@@ -104,12 +94,14 @@ void Service::AdvanceTo(Utime host_time) {
   for (auto& watch : watches_) watch.AdvanceTo(host_time);
   std::erase_if(acknowledged_, [host_time](const auto& one) { return std::chrono::abs(host_time - one.second) >= kAcknowledgedFor; });
   for (const auto& acknowledgement : parts_.acknowledgements.TakeAll()) Acknowledge(acknowledgement, host_time);
+  for (const auto& order : parts_.orders.TakeAll()) SendOrder(order, host_time);
 }
+
+bool Service::HasFreshAlerts(Utime host_time) const { return alerts_time_ && std::chrono::abs(host_time - *alerts_time_) < kFresh; }
 
 void Service::Acknowledge(const Acknowledgement& acknowledgement, Utime host_time) {
   const AlertKey key{acknowledgement.alert_id, ToUtimeUs(acknowledgement.raised)};
-  const bool is_fresh = alerts_time_ && std::chrono::abs(host_time - *alerts_time_) < kFresh;
-  if (!is_fresh || !alerts_.contains(key)) {
+  if (!HasFreshAlerts(host_time) || !alerts_.contains(key)) {
     ++counts_["acks_of_no_alert"];
     return;
   }
@@ -127,12 +119,41 @@ void Service::Acknowledge(const Acknowledgement& acknowledgement, Utime host_tim
   ++counts_["acks_sent"];
 }
 
+void Service::SendOrder(const Order& order, Utime host_time) {
+  if (!HasFreshAlerts(host_time)) {
+    ++counts_["orders_unheard"];
+    return;
+  }
+  if (ordered_ && ordered_->first == order && std::chrono::abs(host_time - ordered_->second) < kOrderedFor) {
+    ++counts_["orders_repeated"];
+    return;
+  }
+  ordered_ = {order, host_time};
+  order_t message{};
+  message.utime_us = ToUtimeUs(host_time);
+  message.seq = order_seq_++;
+  message.source = "page";
+  message.kind = order_t::KIND_SILENCE;
+  if (order.kind == Order::Kind::kSettings) {
+    message.kind = order_t::KIND_SETTINGS;
+    message.mode = order_t::MODE_OPEN_WATER;
+    if (order.mode == Order::Mode::kHarbour) message.mode = order_t::MODE_HARBOUR;
+  }
+  message.guard_zone_range_m = ToWire(order.guard_zone_range_m);
+  message.guard_zone_from_rad = ToWire(order.guard_zone_from_deg, kRadPerDeg);
+  message.guard_zone_to_rad = ToWire(order.guard_zone_to_deg, kRadPerDeg);
+  message.cpa_limit_m = ToWire(order.cpa_limit_m);
+  bus::Publish(bus_, bus::kOrders, message);
+  ++counts_["orders_sent"];
+}
+
 HealthReport Service::Report() {
   HealthReport report;
   server_counts_ = parts_.server.Counts();
   for (const auto& [name, count] : server_counts_) report.counters.push_back({name, count});
   counts_.AppendTo(report.counters);
   report.counters.push_back({"acks_dropped", parts_.acknowledgements.num_dropped()});
+  report.counters.push_back({"orders_dropped", parts_.orders.num_dropped()});
   if (const auto text = InputWatch::Complaint(watches_); !text.empty()) report.Degrade(text);
   if (parts_.add_to_report) parts_.add_to_report(report);
   return report;

@@ -24,33 +24,51 @@
 
 namespace lookout::page {
 
-/// Acknowledgements on their way from the server's thread to that of the bus.
-class AcknowledgementQueue {
+/// What browsers tell the look-out, on its way from the server's thread to that of the bus.
+template <typename Command>
+class CommandQueue {
  public:
   /// Any thread. One of more than kMost that wait is dropped and counted.
-  void Push(const Acknowledgement& acknowledgement);
-  std::vector<Acknowledgement> TakeAll();
-  std::int64_t num_dropped() const;
+  void Push(const Command& command) {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() < kMost) {
+      waiting_.push_back(command);
+    } else {
+      ++num_dropped_;
+    }
+  }
+  std::vector<Command> TakeAll() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(waiting_, {});
+  }
+  std::int64_t num_dropped() const {
+    const std::lock_guard lock(mutex_);
+    return num_dropped_;
+  }
 
   static constexpr std::size_t kMost = 100;
 
  private:
   mutable std::mutex mutex_;
-  std::vector<Acknowledgement> waiting_;
+  std::vector<Command> waiting_;
   std::int64_t num_dropped_ = 0;
 };
+using AcknowledgementQueue = CommandQueue<Acknowledgement>;
+using OrderQueue = CommandQueue<Order>;
 
 /// What the service is given besides its bus.
 struct ServiceParts {
   Server& server;
   AcknowledgementQueue& acknowledgements;
+  OrderQueue& orders;
   std::function<Utime()> now;                                                          // host time
   std::function<void(Utime time, std::string_view channel, Bytes message)> keep = {};  // for the last minutes; none: they are not kept
   std::function<void(HealthReport& report)> add_to_report = {};                        // what else is to be told
 };
 
 /// It subscribes all that a page shows: not the raw channels, LIDAR_NMEA and SIM_TRUTH. What does not decode, or is of a second publisher, is shown
-/// to nobody. An acknowledgement counts while ALERTS came within kFresh of host time and hold that alert, active or rectified.
+/// to nobody. An acknowledgement counts while ALERTS came within kFresh of host time and hold that alert, active or rectified; an order while ALERTS
+/// come.
 class Service {
  public:
   static constexpr std::chrono::seconds kFresh{1};
@@ -68,9 +86,12 @@ class Service {
   template <typename T>
   void Forward(const bus::Channel& channel);
   void OnAlerts(const alerts_t& message, Utime time);
+  bool HasFreshAlerts(Utime host_time) const;
   void Acknowledge(const Acknowledgement& acknowledgement, Utime host_time);
+  void SendOrder(const Order& order, Utime host_time);
 
-  static constexpr auto kCountNames = std::to_array<std::string_view>({"acks_sent", "acks_of_no_alert", "acks_repeated"});
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"acks_sent", "acks_of_no_alert", "acks_repeated", "orders_sent", "orders_unheard", "orders_repeated"});
 
   bus::Bus& bus_;
   ServiceParts parts_;
@@ -81,6 +102,8 @@ class Service {
   std::optional<Utime> alerts_time_;  // of their reception
   std::map<AlertKey, Utime> acknowledged_;
   std::int64_t ack_seq_ = 0;
+  std::optional<std::pair<Order, Utime>> ordered_;  // last
+  std::int64_t order_seq_ = 0;
   Counts<kCountNames> counts_;
   ServerCounts server_counts_;  // the names in a report are of it
 };

@@ -461,6 +461,7 @@ void WritePageRequests(const Folder& folder) {
   folder.Write("range", std::string(R"({"op":"range","id":9,"source":0,"channel":"POSE","from_utime_us":1,"to_utime_us":2,"max_messages":500})"));
   folder.Write("strip", std::string(R"({"op":"strip","id":9,"source":0,"from_utime_us":1,"to_utime_us":2,"buckets":800})"));
   folder.Write("acknowledgement", std::string(R"({"alert_id":7,"raised_utime_us":1781618400000000})"));
+  folder.Write("order", std::string(R"({"kind":"settings","mode":"harbour","guard_zone_range_m":7.5,"cpa_limit_m":3})"));
   folder.Write("host", std::string("[::1]:8080"));
   folder.Write("origin", std::string("http://localhost:8080"));
   folder.Write("token", std::string("Bearer token"));

@@ -24,6 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (watch != nullptr && watch->channels.size() > ChannelNames().size()) std::abort();
   }
   if (const auto acknowledgement = ParseAcknowledgement(text); acknowledgement && acknowledgement->alert_id == 0) std::abort();
+  if (const auto order = ParseOrder(text); order && order->cpa_limit_m && !(*order->cpa_limit_m >= 0.0)) std::abort();
 
   static const OwnHosts kOwn{{"localhost", "[::1]"}, 8080};
   // What is taken for a host of ours stands in a header of the answer.

@@ -15,6 +15,7 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kMaxLimit_m = 10'000.0;  // the tracker has bounds of its own
 constexpr std::int64_t kMaxScansOn = 1'000'000;
 static_assert(bus::kChannels.size() <= kMaxChannels);
 
@@ -56,6 +57,17 @@ class Reader {
     if (!is_whole || value.get<std::int64_t>() < least || value.get<std::int64_t>() > greatest)
       return Fail(std::string(name) + " is not a whole number from " + std::to_string(least) + " to " + std::to_string(greatest)), least;
     return value.get<std::int64_t>();
+  }
+
+  // nullopt: it is not there.
+  std::optional<double> Number(const char* name, double least, double greatest) {
+    const auto found = members_.find(name);
+    if (found == members_.end()) return std::nullopt;
+    const auto value = *found;
+    members_.erase(found);
+    if (!value.is_number() || !(value.get<double>() >= least && value.get<double>() <= greatest))
+      return Fail(std::string(name) + " is out of range"), std::nullopt;
+    return value.get<double>();
   }
 
   int Small(const char* name, int least, int greatest) { return static_cast<int>(Whole(name, least, greatest)); }
@@ -112,6 +124,22 @@ class Reader {
   json members_;
   std::string fault_;
 };
+
+Order ReadOrder(Reader& reader) {
+  Order order;
+  const auto kind = reader.Text("kind");
+  if (kind == "silence") return order;
+  if (kind != "settings") reader.Fail("its kind is not known");
+  order.kind = Order::Kind::kSettings;
+  const auto mode = reader.Text("mode");
+  if (mode != "open_water" && mode != "harbour") reader.Fail("its mode is not known");
+  if (mode == "harbour") order.mode = Order::Mode::kHarbour;
+  order.guard_zone_range_m = reader.Number("guard_zone_range_m", 0.0, kMaxLimit_m);
+  order.guard_zone_from_deg = reader.Number("guard_zone_from_deg", 0.0, 360.0);
+  order.guard_zone_to_deg = reader.Number("guard_zone_to_deg", 0.0, 360.0);
+  order.cpa_limit_m = reader.Number("cpa_limit_m", 0.0, kMaxLimit_m);
+  return order;
+}
 
 At ReadAt(Reader& reader, std::uint32_t id, bool is_step) {
   At at;
@@ -207,6 +235,18 @@ std::optional<Acknowledgement> ParseAcknowledgement(std::string_view text) try {
   reader.End();
   if (!reader.fault().empty()) return std::nullopt;
   return acknowledgement;
+} catch (const std::exception&) {
+  return std::nullopt;
+}
+
+std::optional<Order> ParseOrder(std::string_view text) try {
+  auto members = ParseFlat(text);
+  if (members.is_discarded()) return std::nullopt;
+  Reader reader(std::move(members));
+  const auto order = ReadOrder(reader);
+  reader.End();
+  if (!reader.fault().empty()) return std::nullopt;
+  return order;
 } catch (const std::exception&) {
   return std::nullopt;
 }

@@ -75,4 +75,22 @@ struct Acknowledgement {
 /// @return nullopt when the text is none; never throws
 std::optional<Acknowledgement> ParseAcknowledgement(std::string_view text);
 
+/// What a browser with a valid token tells the look-out to do: no sound for a while, or mode and limits (order_t).
+struct Order {
+  enum class Kind : std::uint8_t { kSilence, kSettings };
+  enum class Mode : std::uint8_t { kOpenWater, kHarbour };
+  Kind kind = Kind::kSilence;
+  Mode mode = Mode::kOpenWater;  // of settings, as the rest; nullopt: as the config says
+  std::optional<double> guard_zone_range_m = {};
+  std::optional<double> guard_zone_from_deg = {};
+  std::optional<double> guard_zone_to_deg = {};
+  std::optional<double> cpa_limit_m = {};
+
+  friend bool operator==(const Order&, const Order&) = default;
+};
+
+/// The body of POST /order.
+/// @return nullopt when the text is none; never throws
+std::optional<Order> ParseOrder(std::string_view text);
+
 }  // namespace lookout::page

@@ -20,6 +20,10 @@ using boost::system::error_code;
 
 namespace {
 
+constexpr std::string_view kAcknowledgePath = "/acknowledge";
+constexpr std::string_view kOrderPath = "/order";
+bool IsCommand(std::string_view path) { return path == kAcknowledgePath || path == kOrderPath; }
+
 constexpr std::chrono::seconds kFirstPatience{5};
 constexpr std::chrono::seconds kKeepAlive{15};
 constexpr std::chrono::seconds kMaxReading{5};
@@ -119,9 +123,9 @@ void Connection::Handle() {
   if (!IsAllowed()) return;
   const auto target = request_.target();
   const auto path = std::string_view(target.data(), target.size()).substr(0, std::min(target.find('?'), target.size()));
-  if (path == "/acknowledge") {
+  if (IsCommand(path)) {
     if (request_.method() != http::verb::post) return Refuse(http::status::method_not_allowed, "this takes POST", "refused_request");
-    return Acknowledge();
+    return path == kAcknowledgePath ? Acknowledge() : TakeOrder();
   }
   if (!IsRead(request_.method())) return Refuse(http::status::method_not_allowed, "this takes GET", "refused_request");
   if (path == "/socket") return BecomeWebSocket();
@@ -187,14 +191,33 @@ void Connection::ServeFromDisk(std::string_view path) {
   });
 }
 
+bool Connection::MayCommand() {
+  if (request_.count(http::field::authorization) != 1 || !HasToken(Header(http::field::authorization), hub_.options.token)) {
+    Refuse(http::status::unauthorized, "this takes the token of the link that the server has printed", "refused_token");
+    return false;
+  }
+  if (!hub_.may_acknowledge()) {
+    Refuse(http::status::conflict, "a log is shown: there is nothing to acknowledge", "refused_request");
+    return false;
+  }
+  return true;
+}
+
 void Connection::Acknowledge() {
-  if (request_.count(http::field::authorization) != 1 || !HasToken(Header(http::field::authorization), hub_.options.token))
-    return Refuse(http::status::unauthorized, "this takes the token of the link that the server has printed", "refused_token");
-  if (!hub_.may_acknowledge()) return Refuse(http::status::conflict, "a log is shown: there is nothing to acknowledge", "refused_request");
+  if (!MayCommand()) return;
   const auto acknowledgement = ParseAcknowledgement(request_.body());
   if (!acknowledgement) return Refuse(http::status::bad_request, "this is no acknowledgement", "refused_request");
   hub_.parts.acknowledge(*acknowledgement);
   hub_.counts->Add("acknowledgements");
+  Refuse(http::status::accepted, "sent", {});
+}
+
+void Connection::TakeOrder() {
+  if (!MayCommand()) return;
+  const auto order = ParseOrder(request_.body());
+  if (!order) return Refuse(http::status::bad_request, "this is no order", "refused_request");
+  hub_.parts.order(*order);
+  hub_.counts->Add("orders");
   Refuse(http::status::accepted, "sent", {});
 }
 
@@ -230,7 +253,8 @@ void Connection::Send(http::status status, Content content, std::string_view cac
   }
   if (content_.is_gzip) response.set(http::field::content_encoding, "gzip");
   if (status == http::status::unauthorized) response.set(http::field::www_authenticate, "Bearer");
-  if (status == http::status::method_not_allowed) response.set(http::field::allow, request_.target() == "/acknowledge" ? "POST" : "GET, HEAD");
+  if (status == http::status::method_not_allowed)
+    response.set(http::field::allow, IsCommand({request_.target().data(), request_.target().size()}) ? "POST" : "GET, HEAD");
   if (status == http::status::upgrade_required) response.set(http::field::upgrade, "websocket");
   if (status == http::status::service_unavailable) response.set(http::field::retry_after, "5");
   response.keep_alive(request_.keep_alive() && !hub_.is_ending);

@@ -52,7 +52,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void Serve(std::string_view path);
   void ServeAsset(std::string_view path);
   void ServeFromDisk(std::string_view path);
+  bool MayCommand();
   void Acknowledge();
+  void TakeOrder();
   void BecomeWebSocket();
 
   std::string_view Header(boost::beast::http::field name) const;

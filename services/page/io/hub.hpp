@@ -28,7 +28,7 @@ struct Hub {
   Hub(ServerOptions server_options, ServerParts server_parts)
       : options(std::move(server_options)), parts(std::move(server_parts)), assets(parts.assets), counts(std::make_shared<Counts>()) {}
 
-  bool may_acknowledge() const { return !options.token.empty() && !options.is_log && parts.acknowledge; }
+  bool may_acknowledge() const { return !options.token.empty() && !options.is_log && parts.acknowledge && parts.order; }
 
   const ServerOptions options;
   const ServerParts parts;

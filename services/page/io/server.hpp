@@ -44,20 +44,21 @@ struct Tile {
   std::vector<std::uint8_t> bytes;
 };
 
-/// What the server asks of the rest. Called on its threads: Acknowledge on the server's, the others on the one that reads disks.
+/// What the server asks of the rest. Called on its threads: acknowledge and order on the server's, the others on the one that reads disks.
 struct ServerParts {
   std::vector<Asset> assets = {};
   std::shared_ptr<Recordings> recordings = {};                        // may be none
   std::function<std::string()> tiles_text = {};                       // tiles.json; none: no map
   std::function<std::optional<Tile>(int z, int x, int y)> tile = {};  // none: no map
   std::function<void(const Acknowledgement&)> acknowledge = {};
+  std::function<void(const Order&)> order = {};
 };
 
 /// Counts by name, for HEALTH; one that is 0 may be missing.
 /// Now: clients (WebSockets), connections. Since the start:
-/// requests (by HTTP), openings (of WebSockets), answers (out of recordings), acknowledgements, frames_sent, frames_replaced (a newer one came before
-/// there was room), frames_dropped (the server's own thread did not keep up); refused_host (421), refused_origin (403), refused_token (401),
-/// refused_full (503), refused_request (other refusals), connections_silent (asked for nothing), connections_let_go (closed for new ones),
+/// requests (by HTTP), openings (of WebSockets), answers (out of recordings), acknowledgements, orders, frames_sent, frames_replaced (a newer one
+/// came before there was room), frames_dropped (the server's own thread did not keep up); refused_host (421), refused_origin (403), refused_token
+/// (401), refused_full (503), refused_request (other refusals), connections_silent (asked for nothing), connections_let_go (closed for new ones),
 /// connections_refused (too many), requests_late and answers_late (cut off), client_faults
 /// (what a WebSocket should not have said), clients_silent (let go); accept_faults (no descriptor was left, say), faults (of the server: an
 /// exception, a map that cannot be read).

@@ -1,6 +1,7 @@
 #include "services/page/service.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
 #include <string>
@@ -10,6 +11,7 @@
 #include "common/bus/memory_bus.hpp"
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/health_t.hpp"
+#include "lookout/order_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "services/page/assets.hpp"
 #include "tests/support/page_browser.hpp"
@@ -27,14 +29,16 @@ class PageService : public ::testing::Test {
     ServerParts parts;
     parts.assets = Assets();
     parts.acknowledge = [this](const Acknowledgement& acknowledgement) { queue_.Push(acknowledgement); };
+    parts.order = [this](const Order& order) { orders_.Push(order); };
     server_ = std::make_unique<Server>(ServerOptions{.token = kToken}, std::move(parts));
-    ServiceParts service_parts{.server = *server_, .acknowledgements = queue_, .now = [this] { return now_; }};
+    ServiceParts service_parts{.server = *server_, .acknowledgements = queue_, .orders = orders_, .now = [this] { return now_; }};
     service_parts.keep = [this](Utime, std::string_view channel, Bytes message) {
       kept_.emplace_back(channel);
       num_kept_bytes_ += message.size();
     };
     service_ = std::make_unique<Service>(bus_, std::move(service_parts));
     bus::Subscribe<alert_ack_t>(bus_, bus::kAlertAck, [this](const alert_ack_t& message) { sent_.push_back(message); });
+    bus::Subscribe<order_t>(bus_, bus::kOrders, [this](const order_t& message) { ordered_.push_back(message); });
   }
 
   void Drain() {
@@ -60,6 +64,11 @@ class PageService : public ::testing::Test {
     service_->AdvanceTo(now_);
     Drain();
   }
+  void Tell(const Order& order) {
+    orders_.Push(order);
+    service_->AdvanceTo(now_);
+    Drain();
+  }
   std::int64_t Count(std::string_view name) {
     const auto report = service_->Report();
     for (const auto& counter : report.counters) {
@@ -72,6 +81,8 @@ class PageService : public ::testing::Test {
   bus::MemoryBus bus_;
   Utime now_{std::chrono::microseconds(kStartUs)};
   AcknowledgementQueue queue_;
+  OrderQueue orders_;
+  std::vector<order_t> ordered_;
   std::unique_ptr<Server> server_;
   std::unique_ptr<Service> service_;
   std::vector<std::string> kept_;
@@ -121,6 +132,36 @@ TEST_F(PageService, DropsAcknowledgementsOfWhoSendsThemByTheHundred) {
   for (int i = 0; i < 150; ++i) queue_.Push({1, now_});
   EXPECT_EQ(queue_.TakeAll().size(), AcknowledgementQueue::kMost);
   EXPECT_EQ(Count("acks_dropped"), 50);
+}
+
+TEST_F(PageService, TellsTheLookOutToBeSilentOnceASecond) {
+  Tell({});  // no ALERTS yet
+  EXPECT_EQ(Count("orders_unheard"), 1);
+  SendAlert(alert_t::STATE_ACTIVE);
+  Tell({});
+  Tell({});
+  ASSERT_EQ(ordered_.size(), 1U);
+  EXPECT_EQ(ordered_[0].kind, order_t::KIND_SILENCE);
+  EXPECT_EQ(ordered_[0].source, "page");
+  EXPECT_EQ(ordered_[0].utime_us, kStartUs);
+  EXPECT_EQ(Count("orders_repeated"), 1);
+  now_ += 1s;
+  SendAlert(alert_t::STATE_ACTIVE);
+  Tell({});
+  ASSERT_EQ(ordered_.size(), 2U);
+  EXPECT_EQ(ordered_[1].seq, 1);
+  EXPECT_EQ(sent_.size(), 0U) << "silence acknowledges nothing";
+}
+
+TEST_F(PageService, SetsLimitsAndLeavesToTheConfigWhatIsNotGiven) {
+  SendAlert(alert_t::STATE_ACTIVE);
+  Tell({.kind = Order::Kind::kSettings, .mode = Order::Mode::kHarbour, .guard_zone_from_deg = 270.0, .cpa_limit_m = 3.0});
+  ASSERT_EQ(ordered_.size(), 1U);
+  EXPECT_EQ(ordered_[0].kind, order_t::KIND_SETTINGS);
+  EXPECT_EQ(ordered_[0].mode, order_t::MODE_HARBOUR);
+  EXPECT_TRUE(std::isnan(ordered_[0].guard_zone_range_m));
+  EXPECT_NEAR(ordered_[0].guard_zone_from_rad, 4.712389, 1e-5);
+  EXPECT_EQ(ordered_[0].cpa_limit_m, 3.0F);
 }
 
 TEST_F(PageService, SendsTheVeryBytesToWhoWatches) {

@@ -122,6 +122,20 @@ TEST(Acknowledgement, NamesAnAlertOfTheTrackerOrOfItsWatch) {
     EXPECT_FALSE(ParseAcknowledgement(text)) << text;
 }
 
+TEST(Order, IsSilenceOrLimitsWithinBounds) {
+  const auto silence = ParseOrder(R"({"kind":"silence"})");
+  ASSERT_TRUE(silence);
+  EXPECT_EQ(silence->kind, Order::Kind::kSilence);
+  const auto settings = ParseOrder(R"({"kind":"settings","mode":"harbour","guard_zone_range_m":7.5,"guard_zone_to_deg":60})");
+  ASSERT_TRUE(settings);
+  EXPECT_EQ(*settings, (Order{.kind = Order::Kind::kSettings, .mode = Order::Mode::kHarbour, .guard_zone_range_m = 7.5, .guard_zone_to_deg = 60.0}));
+  for (const std::string text :
+       {"", "{}", R"({"kind":"loud"})", R"({"kind":"silence","mode":"harbour"})", R"({"kind":"settings"})", R"({"kind":"settings","mode":"sea"})",
+        R"({"kind":"settings","mode":"harbour","cpa_limit_m":-1})", R"({"kind":"settings","mode":"harbour","cpa_limit_m":"3"})",
+        R"({"kind":"settings","mode":"harbour","cpa_limit_m":1e300})", R"({"kind":"settings","mode":"harbour","guard_zone_from_deg":361})"})
+    EXPECT_FALSE(ParseOrder(text)) << text;
+}
+
 TEST(Frame, HasItsHeadInFront) {
   const std::vector<std::uint8_t> message{0xAA, 0xBB};
   const auto frame = ToFrame({2, 0x0103, 0x04050607, Utime(std::chrono::microseconds(-2))}, message);

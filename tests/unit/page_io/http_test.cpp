@@ -47,15 +47,16 @@ class PageHttp : public ::testing::Test {
       return Tile{"image/png", {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y)}};
     };
     parts.acknowledge = [this](const Acknowledgement& acknowledgement) { acknowledged_ = acknowledgement.alert_id; };
+    parts.order = [this](const Order&) { ++num_orders_; };
     server_.reset();
     server_ = std::make_unique<Server>(std::move(options), std::move(parts));
   }
 
   Peer Connect() const { return Peer(server_->port()); }
   std::string Get(const std::string& path, const std::string& more = {}) const { return Connect().Get(path, more); }
-  std::string Post(const std::string& more, const std::string& body) const {
+  std::string Post(const std::string& more, const std::string& body, const std::string& path = "/acknowledge") const {
     auto peer = Connect();
-    return peer.Ask("POST /acknowledge HTTP/1.1\r\nHost: " + peer.host() + more, body);
+    return peer.Ask("POST " + path + " HTTP/1.1\r\nHost: " + peer.host() + more, body);
   }
   std::string OriginLine() const { return "\r\nOrigin: http://127.0.0.1:" + std::to_string(server_->port()); }
 
@@ -70,6 +71,7 @@ class PageHttp : public ::testing::Test {
 
   const std::vector<std::uint8_t> page_ = Gzip(kPageText);
   std::atomic<std::int64_t> acknowledged_ = 0;
+  std::atomic<int> num_orders_ = 0;
   std::unique_ptr<Server> server_;
 };
 
@@ -165,6 +167,18 @@ TEST_F(PageHttp, WhoHasTheTokenAcknowledges) {
   EXPECT_TRUE(IsStatus(Post(OriginLine() + "\r\nAuthorization: Bearer secret", body), 202));
   EXPECT_EQ(acknowledged_, 7);
   EXPECT_EQ(CountOf(*server_, "refused_token"), 2);
+}
+
+TEST_F(PageHttp, WhoHasTheTokenOrders) {
+  const std::string body = R"({"kind":"silence"})";
+  EXPECT_TRUE(IsStatus(Post(OriginLine(), body, "/order"), 401));
+  EXPECT_TRUE(IsStatus(Post("\r\nAuthorization: Bearer secret", body, "/order"), 403));
+  EXPECT_TRUE(IsStatus(Post(OriginLine() + "\r\nAuthorization: Bearer secret", "{}", "/order"), 400));
+  EXPECT_TRUE(IsStatus(Get("/order"), 405));
+  EXPECT_EQ(num_orders_, 0);
+  EXPECT_TRUE(IsStatus(Post(OriginLine() + "\r\nAuthorization: Bearer secret", body, "/order"), 202));
+  EXPECT_EQ(num_orders_, 1);
+  EXPECT_EQ(acknowledged_, 0);
 }
 
 TEST_F(PageHttp, ALogTakesNoAcknowledgement) {

@@ -62,6 +62,7 @@ class PageServerTest : public ::testing::Test {
     ServerParts parts;
     parts.recordings = recordings_;
     parts.acknowledge = [](const Acknowledgement&) {};
+    parts.order = [](const Order&) {};
     parts.tile = [](int, int, int) -> std::optional<Tile> { return Tile{"image/png", {1}}; };
     server_ = std::make_unique<Server>(options, std::move(parts));
   }

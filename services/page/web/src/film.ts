@@ -56,6 +56,9 @@ export class Film {
   refusal = "";
   /** Alerts of now, while a recorded moment is shown. */
   liveAlerts: Alert[] = [];
+  /** ALERTS of now, whole. */
+  liveReport: Alerts | null = null;
+  private liveSounding = 0;
 
   private assembler = new Assembler();
   private shownFrames: Frame[] = [];
@@ -97,9 +100,12 @@ export class Film {
   take(frame: Frame): void {
     if (this.state.showing.kind === "live" || frame.channel !== "ALERTS") return;
     try {
-      const alerts = Alerts.decode(frame.bytes).alerts.filter((alert) => alert.state !== Alert.STATE_CLEARED);
+      this.liveReport = Alerts.decode(frame.bytes);
+      const alerts = this.liveReport.alerts.filter((alert) => alert.state !== Alert.STATE_CLEARED);
       const text = (list: Alert[]) => list.map((alert) => `${alert.id} ${alert.level} ${alert.state}`).join();
-      const isOther = text(alerts) !== text(this.liveAlerts);
+      const { sounding_alert_id } = this.liveReport;
+      const isOther = text(alerts) !== text(this.liveAlerts) || sounding_alert_id !== this.liveSounding;
+      this.liveSounding = sounding_alert_id;
       this.liveAlerts = alerts;
       if (isOther) this.state.tell("showing");
     } catch (error) {
@@ -154,6 +160,7 @@ export class Film {
     ++this.generation;
     this.isAsking = false;
     this.liveAlerts = [];
+    this.liveReport = null;
     this.shownFrames = [];
     this.state.showing = { kind: "live" };
     this.state.beside = null;

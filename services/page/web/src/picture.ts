@@ -41,7 +41,9 @@ export interface Picture {
   /** Remembered edge of land, map frame: east, north, east, north ... */
   waterline_map_m: Float32Array;
   alerts: wire.Alert[];
-  /** Alert of a track, the gravest. */
+  /** ALERTS whole: what sounds, silence, limits in force; null: none came. */
+  alert_report: wire.Alerts | null;
+  /** Alert of a track that holds, the gravest. */
   alert_of_track: ReadonlyMap<number, wire.Alert>;
   /** Of the end of the scan, or the newest. */
   pose: wire.Pose | null;
@@ -179,7 +181,7 @@ export class Assembler {
     for (const segment of segments) if (segment.kind === wire.Segment.KIND_LAND && !track_of_segment.has(segment.id)) land_segments.add(segment.id);
     const alert_of_track = new Map<number, wire.Alert>();
     const alerts = this.alerts?.alerts ?? [];
-    for (const alert of alerts) if (alert.track_id !== 0 && !alert_of_track.has(alert.track_id)) alert_of_track.set(alert.track_id, alert);
+    for (const alert of alerts) if (holds(alert) && alert.track_id !== 0 && !alert_of_track.has(alert.track_id)) alert_of_track.set(alert.track_id, alert);
     const end_utime_us = first?.end_utime_us ?? tracksParts[0]?.end_utime_us ?? this.alerts?.end_utime_us ?? this.poses.at(-1)?.utime_us ?? 0;
     const pose = this.poses.findLast((candidate) => candidate.utime_us <= end_utime_us) ?? this.poses.at(-1) ?? null;
     const motion = motionOf(this.poses, pose);
@@ -190,7 +192,7 @@ export class Assembler {
       returns: scan.length === 0 ? null : this.returnsOf(scan, isOfScan ? segmentParts : kNoParts, pose, motion.turn_radps),
       segments, obstacles: this.obstacles.whole.flatMap((part) => part.obstacles), tracks,
       track_by_id: new Map(tracks.map((track) => [track.id, track])), track_of_segment, land_segments, waterline_map_m: this.waterline,
-      alerts, alert_of_track, pose,
+      alerts, alert_report: this.alerts, alert_of_track, pose,
       own_east_m: pose === null ? NaN : pose.position_map_m[0]! + after_s * (pose.velocity_map_mps[0]! || 0),
       own_north_m: pose === null ? NaN : pose.position_map_m[1]! + after_s * (pose.velocity_map_mps[1]! || 0),
       heading_rad: pose === null ? NaN : pose.heading_rad + after_s * motion.turn_radps,
@@ -207,6 +209,9 @@ function interleaved(east: Float32Array, north: Float32Array): Float32Array<Arra
   for (let i = 0; i < east.length; ++i) { both[2 * i] = east[i]!; both[2 * i + 1] = north[i]!; }
   return both;
 }
+
+/** Whether it is so now, acknowledged or not; else it is over. */
+export function holds(alert: Pick<wire.Alert, "state">): boolean { return alert.state === wire.Alert.STATE_ACTIVE || alert.state === wire.Alert.STATE_ACKNOWLEDGED; }
 
 /** Whether the heading is only the course over ground: neither a compass nor an attitude sensor tells one. */
 export function isOnlyCourse(pose: Pick<wire.Pose, "heading_source"> | null | undefined): boolean { return pose?.heading_source === wire.Pose.HEADING_COURSE; }

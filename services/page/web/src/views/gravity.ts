@@ -1,26 +1,41 @@
 // How grave things are, and their order: the most dangerous first. Nothing here knows the DOM.
 import * as wire from "../messages/generated.js";
+import { holds } from "../picture.js";
 import type { Gravity } from "./shapes.js";
 
 /** What holds and is not acknowledged is a warning or a caution; what is acknowledged or over is quiet. */
 export function gravityOf(alert: Pick<wire.Alert, "level" | "state">): Gravity {
-  if (alert.state === wire.Alert.STATE_ACKNOWLEDGED || alert.state === wire.Alert.STATE_CLEARED) return "quiet";
+  if (alert.state !== wire.Alert.STATE_ACTIVE) return "quiet";
   return alert.level >= wire.Alert.LEVEL_WARNING ? "warning" : "caution";
 }
 
-const kSoon_s = 30;
+const kClearly_s = 1;  // by so much less time is left: less makes no other order, or a button would be touched for another
 
-// Active before over before acknowledged; warnings before cautions; what comes within half a minute; what was raised last. Nothing of it changes with
-// each scan: a button that moved would be touched for another.
-function urgency(alert: wire.Alert): [number, number, number, number] {
-  const states = [wire.Alert.STATE_ACTIVE, wire.Alert.STATE_RECTIFIED, wire.Alert.STATE_ACKNOWLEDGED] as readonly number[];
-  const state = states.indexOf(alert.state);
-  return [state < 0 ? states.length : state, -alert.level, alert.tcpa_s > kSoon_s ? 1 : 0, -alert.raised_utime_us];
+/** What holds: what is not acknowledged before what is, warnings before cautions, then what leaves less time.
+ *  @param before ids in the order of before: what is as urgent stays where it was; what is new comes first */
+export function byGravity(alerts: readonly wire.Alert[], before: readonly number[] = []): wire.Alert[] {
+  const place = (alert: wire.Alert) => before.indexOf(alert.id);
+  const placed = sorted(alerts.filter(holds), (alert) => [alert.state === wire.Alert.STATE_ACKNOWLEDGED ? 1 : 0, -alert.level, place(alert), -alert.raised_utime_us]);
+  const isAlike = (a: wire.Alert, b: wire.Alert) => a.level === b.level && a.state === b.state;
+  for (let i = 1; i < placed.length; ++i) {
+    for (let k = i; k > 0 && isAlike(placed[k]!, placed[k - 1]!) && isClearlySooner(placed[k]!, placed[k - 1]!); --k) {
+      [placed[k], placed[k - 1]] = [placed[k - 1]!, placed[k]!];
+    }
+  }
+  return placed;
+}
+function isClearlySooner(one: wire.Alert, other: wire.Alert): boolean {
+  const left = last(one.time_left_s), of_other = last(other.time_left_s);
+  return left < Infinity && left < of_other - kClearly_s;
 }
 
-export function byGravity(alerts: readonly wire.Alert[]): wire.Alert[] {
-  return sorted(alerts.filter((alert) => alert.state !== wire.Alert.STATE_CLEARED), urgency);
+/** What is over and was not acknowledged, the newest first. */
+export function overOf(alerts: readonly wire.Alert[]): wire.Alert[] {
+  return sorted(alerts.filter((alert) => alert.state === wire.Alert.STATE_RECTIFIED), (alert) => [-alert.changed_utime_us]);
 }
+
+/** Whether it goes away again: that is never shown as a danger. */
+export function opensOut(alert: Pick<wire.Alert, "time_left_s" | "tcpa_s">): boolean { return Number.isNaN(alert.time_left_s) && alert.tcpa_s <= 0; }
 
 /** Tracks by alert, then probability of a close approach in steps of a tenth, time to it, and range. Status LOST is left out. */
 export function byDanger(tracks: readonly wire.Track[], alert_of_track: ReadonlyMap<number, wire.Alert>, withTentative: boolean): wire.Track[] {
@@ -73,9 +88,9 @@ export class Announcer {
 }
 
 export type Pattern = "caution" | "warning";
-/** The sound that belongs to what holds and nobody has acknowledged. */
-export function patternOf(alerts: readonly Pick<wire.Alert, "level" | "state">[]): Pattern | null {
-  const active = alerts.filter((alert) => alert.state === wire.Alert.STATE_ACTIVE);
-  if (active.length === 0) return null;
-  return active.some((alert) => alert.level >= wire.Alert.LEVEL_WARNING) ? "warning" : "caution";
+/** The sound of the one that sounds, as the look-out tells it. */
+export function patternOf(report: Pick<wire.Alerts, "alerts" | "sounding_alert_id"> | null): Pattern | null {
+  if (report === null || report.sounding_alert_id === 0) return null;
+  const alert = report.alerts.find(({ id }) => id === report.sounding_alert_id);
+  return alert === undefined ? null : alert.level >= wire.Alert.LEVEL_WARNING ? "warning" : "caution";
 }

@@ -2,7 +2,7 @@
 import type { State } from "../state.js";
 import type { Pattern } from "./gravity.js";
 
-// Tones: frequency in Hz, begin and length in s. Warning: three pairs, high. Caution: two, low. They repeat until all is acknowledged.
+// Tones: frequency in Hz, begin and length in s. Warning: three pairs, high. Caution: two, low. They repeat while the look-out says that they sound.
 const kTones: Record<Pattern, { repeat_s: number; tones: readonly (readonly [number, number, number])[] }> = {
   warning: { repeat_s: 2, tones: [0, 0.3, 0.6].flatMap((begin) => [[988, begin, 0.11], [1319, begin + 0.12, 0.14]] as const) },
   caution: { repeat_s: 6, tones: [[587, 0, 0.22], [494, 0.28, 0.3]] },
@@ -12,6 +12,7 @@ export class Sounder {
   private context: AudioContext | null = null;
   private next_ms = 0;
   private pattern: Pattern | null = null;
+  private of = 0;
 
   constructor(private readonly state: State) {
     // A browser plays nothing before its user has touched the page.
@@ -24,9 +25,11 @@ export class Sounder {
   /** Whether there would be a sound now. */
   get isAllowed(): boolean { return this.state.settings.get("sound") && this.context?.state === "running"; }
 
-  want(pattern: Pattern | null): void {
-    if (pattern === this.pattern) return;
+  /** @param of the alert that sounds: another begins anew */
+  want(pattern: Pattern | null, of: number): void {
+    if (pattern === this.pattern && of === this.of) return;
     this.pattern = pattern;
+    this.of = of;
     this.next_ms = 0;
   }
 
