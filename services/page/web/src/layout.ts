@@ -8,7 +8,9 @@ export type ViewName = keyof typeof texts.views;
 export class Layout {
   private main: ViewName = "around";
   private side: ViewName = "lists";
+  private isSideOpen = true;
   private readonly buttons = new Map<ViewName, HTMLButtonElement>();
+  private readonly toggle: HTMLButtonElement;
   private readonly panes: { main: HTMLElement; side: HTMLElement };
   private readonly wide = matchMedia("(min-width: 900px)");
 
@@ -29,12 +31,20 @@ export class Layout {
       this.buttons.set(name, button);
       tabs.append(button);
     }
+    this.toggle = document.createElement("button");
+    this.toggle.type = "button";
+    this.toggle.className = "side-toggle";
+    this.toggle.onclick = () => { this.state.settings.set("shows_side", !this.state.settings.get("shows_side")); };
+    tabs.append(this.toggle);
     const panes = make("main", "panes");
     panes.append(this.panes.main, this.panes.side);
     document.body.append(...top, tabs, panes, ...bottom);
     this.wide.onchange = () => { this.place(); };
     const palette = () => { document.documentElement.dataset["palette"] = this.state.settings.get("palette"); };
-    this.state.on(["settings"], palette);
+    this.state.on(["settings"], () => {
+      palette();
+      if (this.state.settings.get("shows_side") !== this.isSideOpen) this.place();
+    });
     palette();
     this.state.on(["sources"], () => { this.offerComparing(); });
     this.offerComparing();
@@ -46,6 +56,7 @@ export class Layout {
     if (this.wide.matches && (name === "lists" || name === "plots")) {
       this.side = name;
       if (this.main === "compare") this.main = "around";
+      this.state.settings.set("shows_side", true);
     } else this.main = name;
     this.place();
   }
@@ -60,9 +71,13 @@ export class Layout {
 
   private place(): void {
     // Two logs beside each other need the whole width.
-    const hasSide = this.wide.matches && this.main !== "compare", shown = hasSide ? [this.main, this.side] : [this.main];
+    this.isSideOpen = this.state.settings.get("shows_side");
+    const hasRoom = this.wide.matches && this.main !== "compare", hasSide = hasRoom && this.isSideOpen, shown = hasSide ? [this.main, this.side] : [this.main];
     // Before views are told that they are seen: they measure their place then.
     this.panes.side.hidden = !hasSide;
+    this.toggle.hidden = !hasRoom;
+    this.toggle.textContent = this.isSideOpen ? texts.side.close : texts.side.open;
+    this.toggle.setAttribute("aria-expanded", String(this.isSideOpen));
     for (const [name, view] of this.views) {
       const pane = name === this.main ? this.panes.main : hasSide && name === this.side ? this.panes.side : null;
       if (pane !== null && view.element.parentElement !== pane) pane.append(view.element);

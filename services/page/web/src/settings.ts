@@ -16,16 +16,18 @@ export interface SettingValues {
   shows_returns: boolean;
   shows_trails: boolean;
   shows_ellipses: boolean;
+  /** Of a wide window: lists or plots beside the picture. */
+  shows_side: boolean;
 }
 export const kDefaults: SettingValues = {
   palette: "day", length_unit: "m", speed_unit: "kn", orientation: "head", colour_by: "track", image_colour_by: "range", differs_share: 0.05, differs_moved_m: 2, sound: false,
-  shows_tentative: false, shows_returns: true, shows_trails: true, shows_ellipses: false,
+  shows_tentative: false, shows_returns: true, shows_trails: true, shows_ellipses: false, shows_side: true,
 };
 const kColours = ["segment", "track", "height", "reflectivity", "range"] as const;
 const kChoices: { [Name in keyof SettingValues]: readonly SettingValues[Name][] } = {
   palette: ["day", "dusk", "night", "sun"], length_unit: ["m", "NM"], speed_unit: ["kn", "mps", "kmh"], orientation: ["north", "head"],
   colour_by: kColours, image_colour_by: kColours, differs_share: [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 0], differs_moved_m: [0.5, 1, 2, 5, 10, 0], sound: [false, true], shows_tentative: [false, true], shows_returns: [false, true],
-  shows_trails: [false, true], shows_ellipses: [false, true],
+  shows_trails: [false, true], shows_ellipses: [false, true], shows_side: [false, true],
 };
 const kKey = "lookout.settings";
 

@@ -1,4 +1,5 @@
 // Colours of the palette for what is drawn, and the colour of each return. The palettes themselves are in the style sheet.
+import { alertColour } from "./alerts.js";
 import { Segments, Track } from "../messages/generated.js";
 import type { Alert } from "../messages/generated.js";
 import type { Picture } from "../picture.js";
@@ -71,7 +72,7 @@ export function standingOut(colour: Rgb, ground: Rgb, text: Rgb): Rgb {
 
 /** Colour of a track by what it means to the helmsman; the same in every view. */
 export function trackColour(track: Track, alert: Alert | undefined): ColourName {
-  if (alert !== undefined && alert.state !== 4) return alert.level >= 2 ? "warning" : "caution";
+  if (alert !== undefined) return alertColour(alert);
   if (track.status === Track.STATUS_TENTATIVE) return "tentative";
   return track.speed_mps > 0.3 && Number.isFinite(track.course_rad) ? "moving" : "track";
 }

@@ -1,7 +1,8 @@
 // The own boat, and what is measured from it: rings, guard zones, heading and way.
-import { isOnlyCourse } from "../picture.js";
+import { holds, isOnlyCourse, type Picture } from "../picture.js";
 import { texts } from "../texts/index.js";
 import { length } from "../units.js";
+import { alertColour } from "./alerts.js";
 import { blindSectors } from "./blind.js";
 import { kFont, type Box } from "./labels.js";
 import { niceStep } from "./plane.js";
@@ -66,12 +67,21 @@ export function paintRings(scene: Scene): Box[] {
   return boxes;
 }
 
+/** The guard zone in force, as ALERTS tell it; without ALERTS those of the config. */
+export function zonesOf(picture: Pick<Picture, "alert_report" | "boat">): { range_m: number; from_deg: number; to_deg: number }[] {
+  const report = picture.alert_report;
+  if (report === null) return picture.boat?.guard_zones ?? [];
+  const degrees = (radians: number) => radians * 180 / Math.PI;
+  return report.guard_zone_range_m > 0 ? [{ range_m: report.guard_zone_range_m, from_deg: degrees(report.guard_zone_from_rad), to_deg: degrees(report.guard_zone_to_rad) }] : [];
+}
+
 /** Sectors in which anything raises an alert; filled where one is raised now. */
 export function paintGuardZones(scene: Scene): void {
   const { context, plane, own, theme, picture } = scene;
   const x = plane.x(own.east_m, own.north_m), y = plane.y(own.east_m, own.north_m);
-  const isRaised = picture.alerts.some((alert) => alert.cause === 1 && alert.state <= 2);
-  for (const zone of picture.boat?.guard_zones ?? []) {
+  const inside = picture.alerts.filter((alert) => holds(alert) && alert.is_in_zone);
+  const raised = inside.length === 0 ? null : inside.some((alert) => alertColour(alert) === "warning") ? theme.css.warning : theme.css.caution;
+  for (const zone of zonesOf(picture)) {
     const turn = own.heading_rad - plane.up - Math.PI / 2;
     const from = zone.from_deg * Math.PI / 180 + turn;
     const sweep = ((zone.to_deg - zone.from_deg) % 360 + 360) % 360 || 360;
@@ -80,12 +90,12 @@ export function paintGuardZones(scene: Scene): void {
     if (sweep < 360) context.moveTo(x, y);
     context.arc(x, y, zone.range_m * plane.px_per_m, from, to);
     if (sweep < 360) context.closePath();
-    context.fillStyle = isRaised ? theme.css.warning : theme.css.accent;
-    context.globalAlpha = isRaised ? 0.14 : 0.05;
+    context.fillStyle = raised ?? theme.css.accent;
+    context.globalAlpha = raised === null ? 0.05 : 0.14;
     context.fill();
-    context.globalAlpha = isRaised ? 1 : 0.55;
-    context.strokeStyle = isRaised ? theme.css.warning : theme.css.accent;
-    context.lineWidth = isRaised ? 2 : 1.2;
+    context.globalAlpha = raised === null ? 0.55 : 1;
+    context.strokeStyle = raised ?? theme.css.accent;
+    context.lineWidth = raised === null ? 1.2 : 2;
     context.setLineDash([6, 4]);
     context.stroke();
     context.setLineDash([]);
@@ -97,7 +107,7 @@ export function paintGuardZones(scene: Scene): void {
 // Where nobody looks: hatched, so that it is seen in every palette.
 function paintBlindSectors(scene: Scene): void {
   const { context, plane, own, theme, picture } = scene;
-  const sectors = blindSectors(picture.alerts), zone = picture.boat?.guard_zones[0];
+  const sectors = blindSectors(picture.alerts), zone = zonesOf(picture)[0];
   if (sectors.length === 0 || zone === undefined) return;
   const x = plane.x(own.east_m, own.north_m), y = plane.y(own.east_m, own.north_m), turn = own.heading_rad - plane.up - Math.PI / 2;
   context.save();

@@ -3,6 +3,7 @@ import { Track } from "../messages/generated.js";
 import type { Alert } from "../messages/generated.js";
 import { texts } from "../texts/index.js";
 import { duration, length, speed } from "../units.js";
+import { alertColour, alertLines } from "./alerts.js";
 import { trackColour } from "./colours.js";
 import { tracePath, type Scene } from "./scene.js";
 
@@ -11,7 +12,7 @@ const kLeast_px = 11;  // of an outline; below, a mark of this size stands in it
 
 /** What raises an alert first, then what comes near soon, then by distance. */
 export function danger(track: Track, alert: Alert | undefined): number {
-  const raised = alert === undefined || alert.state === 4 ? 0 : alert.level;
+  const raised = alert === undefined ? 0 : alert.level;
   return -1e9 * raised - 1e6 * (track.cpa_probability > 0.1 ? track.cpa_probability : 0) + (Number.isFinite(track.distance_m) ? track.distance_m : track.range_m);
 }
 
@@ -53,20 +54,21 @@ export function paintTracks(scene: Scene): void {
     paintBody(scene, track, undefined, theme.css.muted);
   }
   context.globalAlpha = 1;
-  const gravest = shown.at(-1)?.track;
-  for (const { track, alert } of shown) paintTrack(scene, track, alert, track === gravest || track.id === state.chosen);
+  // Of a thing in alert its label has that in words.
+  const gravest = shown.at(-1)?.alert === undefined ? shown.at(-1)?.track : undefined;
+  for (const { track, alert } of shown) paintTrack(scene, track, alert, track === gravest || (track.id === state.chosen && alert === undefined));
   for (const { track, alert } of shown.reverse()) {
     const half = kLeast_px / 2, x = plane.x(track.position_map_m[0]!, track.position_map_m[1]!), y = plane.y(track.position_map_m[0]!, track.position_map_m[1]!);
     scene.taken.push({ x: x - half, y: y - half, width: kLeast_px, height: kLeast_px });
     const isOn = state.marked.track === track.id || state.chosen === track.id;
     if (track.status === Track.STATUS_TENTATIVE && alert === undefined && !isOn) continue;
     const radius_px = Math.max(kLeast_px, Math.min(30, track.width_m * plane.px_per_m / 2));
-    const isRaised = alert !== undefined && alert.state !== 4, moves = track.speed_mps > 0.3, range = length(state.settings, track.range_m);
+    const isRaised = alert !== undefined, moves = track.speed_mps > 0.3, range = length(state.settings, track.range_m);
     // Many stand about: of them the number and the range in one line is enough.
     const isPlain = !isRaised && !isOn && !moves, name = texts.drawing.name(track.kind, track.id);
     const label = {
       x_px: x, y_px: y, radius_px,
-      lines: isPlain ? [texts.drawing.plain(track.kind, track.id, range)] : [name, moves ? `${range}  ${speed(state.settings, track.speed_mps)}` : range],
+      lines: isRaised ? alertLines(scene, alert) : isPlain ? [texts.drawing.plain(track.kind, track.id, range)] : [name, moves ? `${range}  ${speed(state.settings, track.speed_mps)}` : range],
       colour: theme.css[isRaised || isOn ? trackColour(track, alert) : isPlain ? "muted" : "text"], isBoxed: isRaised || isOn,
     };
     if (isOn) scene.labels.unshift(label); else scene.labels.push(label);
@@ -77,7 +79,7 @@ function paintTrack(scene: Scene, track: Track, alert: Alert | undefined, isName
   const { context, plane, picture, state, theme } = scene;
   const colour = theme.css[trackColour(track, alert)];
   const x = plane.x(track.position_map_m[0]!, track.position_map_m[1]!), y = plane.y(track.position_map_m[0]!, track.position_map_m[1]!);
-  const isRaised = alert !== undefined && alert.state !== 4;
+  const isRaised = alert !== undefined;
   if (state.settings.get("shows_ellipses") || state.chosen === track.id) paintEllipse(scene, track, colour);
   if (track.speed_mps > 0.3) {
     const east = track.position_map_m[0]! + kVector_s * track.velocity_map_mps[0]!, north = track.position_map_m[1]! + kVector_s * track.velocity_map_mps[1]!;
@@ -107,7 +109,7 @@ function paintTrack(scene: Scene, track: Track, alert: Alert | undefined, isName
     context.lineWidth = 2.5;
     context.beginPath();
     context.arc(x, y, radius, 0, 2 * Math.PI);
-    if (isRaised && alert.level >= 2) { context.moveTo(x + radius + 5, y); context.arc(x, y, radius + 5, 0, 2 * Math.PI); }
+    if (isRaised && alertColour(alert) === "warning") { context.moveTo(x + radius + 5, y); context.arc(x, y, radius + 5, 0, 2 * Math.PI); }
     context.stroke();
   }
   if ((isRaised || state.chosen === track.id) && track.tcpa_s > 0 && track.tcpa_s < 900 && picture.pose !== null) paintApproach(scene, track, colour, isNamed);

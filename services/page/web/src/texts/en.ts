@@ -2,6 +2,7 @@
 export const en = {
   title: "Lookout",
   views: { around: "Around", map: "Map", range_image: "Range image", cloud: "3-D", lists: "Lists", plots: "Plots", compare: "Two logs" },
+  side: { close: "Close side pane", open: "Open side pane" },
   connecting: "Connecting …",
   lost: (seconds: number) => `No connection to the boat for ${seconds} s. Trying again.`,
   back: "The connection is back.",

@@ -1,4 +1,5 @@
 // What `around` and `map` share: returns below, the scene above, pointing, measuring.
+import { paintAlertPlaces } from "../drawing/alerts.js";
 import { currentTheme, returnColours, type Theme } from "../drawing/colours.js";
 import { drawLabels } from "../drawing/labels.js";
 import { paintKnownThings, paintLand, paintObstacles } from "../drawing/land.js";
@@ -132,6 +133,7 @@ export abstract class PlanView implements View {
       paintOwnBoat(scene);
       paintTracks(scene);
     } else paintOwnBoat(scene);
+    paintAlertPlaces(scene);
     this.measure.paint(scene, (from, to) => this.between(from, to));
     const x = scene.plane.x(scene.own.east_m, scene.own.north_m), y = scene.plane.y(scene.own.east_m, scene.own.north_m);
     taken.push({ x: x - 10, y: y - 14, width: 20, height: 28 });
