@@ -3,7 +3,6 @@ import { Alert } from "../messages/generated.js";
 import { holds } from "../picture.js";
 import { shortName, sightOf, whatComes } from "../views/alert_words.js";
 import { opensOut } from "../views/gravity.js";
-import { relative } from "../views/track_words.js";
 import { length } from "../units.js";
 import { offset } from "./mercator.js";
 import { boatX, boatY, type Scene } from "./scene.js";
@@ -13,11 +12,13 @@ const kMark_px = 9;
 /** Red is what is dangerous and comes nearer; what opens, or is a caution, is not. */
 export function alertColour(alert: Pick<Alert, "level" | "time_left_s" | "tcpa_s">): "warning" | "caution" { return alert.level >= Alert.LEVEL_WARNING && !opensOut(alert) ? "warning" : "caution"; }
 
-/** What it is; how near and where; when and where to. */
-export function alertLines({ picture, state }: Pick<Scene, "picture" | "state">, alert: Alert): string[] {
-  const sight = sightOf(alert), name = sight === "" ? shortName(alert) : `${shortName(alert)}, ${sight}`;
-  if (!Number.isFinite(alert.distance_m)) return [name];
-  return [name, `${length(state.settings, alert.distance_m)} ${relative(alert.bearing_rad)}`, whatComes(alert, picture, state.settings)].filter((line) => line !== "");
+/** What it is and how near; where it is, or when it passes and where to. Where that has no room: less of it. */
+export function alertLines({ picture, state }: Pick<Scene, "picture" | "state">, alert: Alert): { lines: string[]; shorter: string[][] } {
+  const sight = sightOf(alert), name = shortName(alert), range = length(state.settings, alert.distance_m);
+  const first = Number.isFinite(alert.distance_m) ? `${name} · ${range}` : name;
+  const comes = whatComes(alert, picture, state.settings), brief = whatComes(alert, picture, state.settings, true);
+  const full = [first, sight, comes].filter((line) => line !== ""), less = [first, sight === "" ? brief : sight].filter((line) => line !== "");
+  return { lines: full, shorter: [less, [first]] };
 }
 
 /** Those that no track shows: land, what has no number yet, what is not seen any more. Hollow where it was; adds their labels. */
@@ -37,7 +38,7 @@ export function paintAlertPlaces(scene: Scene): void {
     context.stroke();
     context.setLineDash([]);
     if (x < 0 || y < 0 || x > plane.width_px || y > plane.height_px) continue;
-    scene.labels.push({ x_px: x, y_px: y, radius_px: kMark_px, lines: alertLines(scene, alert), colour, isBoxed: !isLost });
+    scene.labels.push({ x_px: x, y_px: y, radius_px: kMark_px, ...alertLines(scene, alert), colour, isBoxed: !isLost });
   }
 }
 

@@ -7,6 +7,8 @@ export interface Label {
   /** Free of the label: radius of what it belongs to. */
   radius_px: number;
   lines: string[];
+  /** In place of lines where these have no room, one after the other; the last is drawn wherever it must. */
+  shorter?: string[][];
   colour: string;
   /** In a box of its own colour: what must be read. */
   isBoxed: boolean;
@@ -37,9 +39,13 @@ export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], t
   let numDrawn = 0;
   for (const label of labels) {
     if (numDrawn >= most) return;
-    const width = Math.max(...label.lines.map((line) => widthOf(context, line))) + 10, height = kLine_px * label.lines.length + 4;
-    const box = placeFor(label, width, height, size, taken);
-    if (box === null) continue;
+    const fit = [label.lines, ...(label.shorter ?? [])].map((lines) => {
+      const width = Math.max(...lines.map((line) => widthOf(context, line))) + 10, height = kLine_px * lines.length + 4;
+      return { lines, width, height, box: placeFor(label, width, height, size, taken) };
+    });
+    const found = fit.find(({ box }) => box !== null) ?? (label.shorter === undefined ? undefined : fit.at(-1));
+    if (found === undefined) continue;
+    const { lines, width, height } = found, box = found.box ?? within(label, width, height, size);
     ++numDrawn;
     taken.push(box);
     if (label.isBoxed) {
@@ -53,12 +59,18 @@ export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], t
       context.lineWidth = 3.5;
       context.fillStyle = label.colour;
     }
-    label.lines.forEach((line, index) => {
+    lines.forEach((line, index) => {
       const x = box.x + 5, y = box.y + 2 + kLine_px * (index + 0.5);
       if (!label.isBoxed) context.strokeText(line, x, y);
       context.fillText(line, x, y);
     });
   }
+}
+
+// Beside it, on the screen, whatever it covers.
+function within(label: Pick<Label, "x_px" | "y_px" | "radius_px">, width: number, height: number, size: { width_px: number; height_px: number }): Box {
+  const inside = (at: number, most: number) => Math.max(2, Math.min(at, most - 2));
+  return { x: inside(label.x_px + label.radius_px + 6, size.width_px - width), y: inside(label.y_px - height / 2, size.height_px - height), width, height };
 }
 
 /** The first of four places around it (right, left, above, below) that is free and on the screen; null: none. */

@@ -68,8 +68,9 @@ export function paintTracks(scene: Scene): void {
     const isPlain = !isRaised && !isOn && !moves, name = texts.drawing.name(track.kind, track.id);
     const label = {
       x_px: x, y_px: y, radius_px,
-      lines: isRaised ? alertLines(scene, alert) : isPlain ? [texts.drawing.plain(track.kind, track.id, range)] : [name, moves ? `${range}  ${speed(state.settings, track.speed_mps)}` : range],
+      lines: isPlain ? [texts.drawing.plain(track.kind, track.id, range)] : [name, moves ? `${range}  ${speed(state.settings, track.speed_mps)}` : range],
       colour: theme.css[isRaised || isOn ? trackColour(track, alert) : isPlain ? "muted" : "text"], isBoxed: isRaised || isOn,
+      ...(isRaised ? alertLines(scene, alert) : {}),
     };
     if (isOn) scene.labels.unshift(label); else scene.labels.push(label);
   }
