@@ -205,11 +205,18 @@ test("a log opens where its server says that there is something to see", async (
 // An alert of the tracker, put into ALERTS on their way to the browser: lcmtypes/alert_t.lcm.
 function withAlert(bytes, text) {
   const kHead = 16, kBefore = kHead + 8 + 6 * 8 + 1, told = Buffer.from(`${text}\0`);
-  const alert = Buffer.alloc(8 + 3 * 4 + 3 * 8 + 5 * 4 + 4);
-  let at = alert.writeBigInt64BE(77n, 0);
-  for (const number of [3, 1, 1]) at = alert.writeInt32BE(number, at);   // watch, caution, active
-  for (const number of [0n, 1n, 1n]) at = alert.writeBigInt64BE(number, at);
-  for (const number of [0, 0, NaN, NaN, NaN]) at = alert.writeFloatBE(number, at);
+  const alert = Buffer.alloc(8 + 4 + 2 + 2 * 4 + 8 + (4 + 1) + 2 * 8 + 6 * 4 + 2 * 8 + 4 + 8 + 4 + 4);
+  let at = alert.writeInt32BE(3, alert.writeBigInt64BE(77n, 0));  // watch
+  at += 2;                                                        // neither in the zone nor near
+  for (const number of [1, 1]) at = alert.writeInt32BE(number, at);  // caution, active
+  at = alert.writeBigInt64BE(0n, at);
+  at = alert.writeInt32BE(1, at) + 1;                             // no name
+  for (const number of [1n, 1n]) at = alert.writeBigInt64BE(number, at);
+  for (let i = 0; i < 6; ++i) at = alert.writeFloatBE(NaN, at);
+  for (let i = 0; i < 2; ++i) at = alert.writeDoubleBE(NaN, at);
+  at = alert.writeInt32BE(1, at);
+  at = alert.writeBigInt64BE(0n, at);
+  at = alert.writeInt32BE(0, at);
   alert.writeInt32BE(told.length, at);
   const whole = Buffer.concat([bytes.subarray(0, kBefore + 4), alert, told, bytes.subarray(kBefore + 4)]);
   whole.writeInt32BE(bytes.readInt32BE(kBefore) + 1, kBefore);

@@ -184,6 +184,18 @@ export const en = {
       seekHint: "Click on a plot to show that time.",
       chart: (names: string) => `Plot over time: ${names}`,
     },
+    limits: {
+      title: "Look-out",
+      modes: { open_water: "Open water", harbour: "Harbour" },
+      names: { guard_zone_range_m: "Guard zone, m (0: none)", guard_zone_from_deg: "from, ° from the bow", guard_zone_to_deg: "to, ° from the bow", cpa_limit_m: "Closest approach, m" },
+      inForce: (mode: string, range: number, from: number, to: number, cpa: number) =>
+        `In force: ${mode}; ${range > 0 ? `guard zone ${range} m, ${from}° to ${to}°` : "no guard zone"}; closest approach ${cpa} m.`,
+      set: "Set",
+      asConfig: "Limits of the config",
+      sent: "Sent to the look-out.",
+      wrong: (name: string, most: number) => `${name}: a number from 0 to ${most}.`,
+      note: "The look-out keeps them within the bounds of tracker.txtpb, which hold again when it starts anew.",
+    },
     settings: {
       title: "Settings",
       close: "Close",
@@ -200,11 +212,11 @@ export const en = {
         orientation: { north: "North", head: "Bow" },
         colour_by: { segment: "Segment", track: "Track", height: "Height", reflectivity: "Reflectivity", range: "Range" },
       },
-      soundNote: "Warnings and cautions sound until they are acknowledged, while this page is shown live.",
+      soundNote: "The gravest alert sounds while this page is shown live: a warning until it is acknowledged, a caution once.",
       testSound: "Test both sounds",
       noWakeLock: "This browser does not keep the screen on for this page: set the tablet to stay on.",
-      hasToken: "This browser may acknowledge alerts.",
-      noToken: "This browser may not acknowledge alerts: it was not opened by the link with the token.",
+      hasToken: "This browser may acknowledge alerts and set limits.",
+      noToken: "This browser may neither acknowledge alerts nor set limits: it was not opened by the link with the token.",
       about: (version: string, host: string) => `Lookout ${version} on ${host}. Licences: /licences.txt`,
       keys: "Keys",
       keyList: [

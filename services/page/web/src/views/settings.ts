@@ -3,6 +3,7 @@ import type { SettingValues } from "../settings.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { button, make, setText } from "./dom.js";
+import { Limits } from "./limits.js";
 import { type Sounder, WakeLock } from "./sound.js";
 
 const words = texts.panels.settings;
@@ -15,8 +16,10 @@ export class SettingsSheet {
   private readonly about = make("p", "note");
   private readonly token = make("p", "note");
   private readonly keys = make("section");
+  private readonly limits: Limits;
 
   constructor(private readonly state: State, private readonly sounder: Sounder) {
+    this.limits = new Limits(state);
     const title = make("h2", "", words.title);
     title.id = "settings-title";
     this.element.setAttribute("aria-labelledby", title.id);
@@ -29,7 +32,7 @@ export class SettingsSheet {
     this.keys.append(make("h2", "", words.keys), this.listKeys());
     this.keys.tabIndex = -1;
     this.element.append(head, this.choice("palette"), this.choice("orientation"), this.choice("colour_by"), this.choice("length_unit"),
-      this.choice("speed_unit"), shown, sound, this.token, this.keys, this.about);
+      this.choice("speed_unit"), shown, sound, this.limits.element, this.token, this.keys, this.about);
     // A touch beside the sheet closes it.
     this.element.onclick = (event) => { if (event.target === this.element) this.element.close(); };
     state.on(["settings"], () => { this.update(); });
@@ -41,6 +44,7 @@ export class SettingsSheet {
     setText(this.about, hello === null ? "" : words.about(hello.version, hello.host));
     setText(this.token, hello?.mode === "log" ? "" : token === "" ? words.noToken : words.hasToken);
     if (!this.element.open) this.element.showModal();
+    this.limits.open();
     if (atKeys) {
       this.keys.scrollIntoView();
       this.keys.focus();
