@@ -70,7 +70,9 @@ export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], t
 // Beside it, on the screen, whatever it covers.
 function within(label: Pick<Label, "x_px" | "y_px" | "radius_px">, width: number, height: number, size: { width_px: number; height_px: number }): Box {
   const inside = (at: number, most: number) => Math.max(2, Math.min(at, most - 2));
-  return { x: inside(label.x_px + label.radius_px + 6, size.width_px - width), y: inside(label.y_px - height / 2, size.height_px - height), width, height };
+  // To the side with more room.
+  const gap = label.radius_px + 6, left = label.x_px > size.width_px / 2 ? label.x_px - gap - width : label.x_px + gap;
+  return { x: inside(left, size.width_px - width), y: inside(label.y_px - height / 2, size.height_px - height), width, height };
 }
 
 /** The first of four places around it (right, left, above, below) that is free and on the screen; null: none. */

@@ -71,7 +71,7 @@ export const en = {
       lost: "not seen any more",
       ends: ["", "comes near no more", "passed", "gone", "hidden", "one with another"],
       sides: { ahead: "ahead", astern: "astern", port: "to port", starboard: "to starboard" },
-      inZone: "in the guard zone",
+      inZone: "in the zone",
       opens: "opens",
       lastPlace: (where: string) => `last ${where}`,
       closest: (distance: string, time: string) => `${distance} in ${time}`,

@@ -13,8 +13,9 @@ const kMost: Record<Name, number> = { guard_zone_range_m: 1000, guard_zone_from_
 
 /** As a form shows it: degrees, and no more digits than are meant. */
 export function limitOf(report: wire.Alerts, name: Name): number {
-  const value = name === "guard_zone_from_deg" ? report.guard_zone_from_rad / kDegree : name === "guard_zone_to_deg" ? report.guard_zone_to_rad / kDegree : report[name];
-  return Number(value.toFixed(1));
+  if (name === "guard_zone_range_m" || name === "cpa_limit_m") return Number(report[name].toFixed(1));
+  const degrees = (name === "guard_zone_from_deg" ? report.guard_zone_from_rad : report.guard_zone_to_rad) / kDegree;
+  return Number((degrees > 360 ? degrees - 360 : degrees < 0 ? degrees + 360 : degrees).toFixed(1));
 }
 
 export class Limits {
