@@ -243,10 +243,12 @@ test("where nobody looks is told in words, and hatched in the guard zone", async
     for (let i = 0; i < data.length; i += 4) if (data[i] === 0x8f && data[i + 1] === 0x47 && data[i + 2] === 0 && data[i + 3] === 255) ++count;
     return count;
   });
-  await seek(page, "+12");
+  // The same moment without it and with it: what else is in alert is in both.
+  await seek(page, "+12.5");
   await wait(500);
   const before = await cautions();
   isBlind = true;
+  await seek(page, "+12");
   await seek(page, "+12.5");
   await page.waitForFunction((wanted) => document.querySelector(".alerts").innerText.includes(wanted), text);
   await wait(500);

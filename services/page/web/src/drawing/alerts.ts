@@ -4,6 +4,7 @@ import { holds } from "../picture.js";
 import { shortName, sightOf, whatComes } from "../views/alert_words.js";
 import { opensOut } from "../views/gravity.js";
 import { length } from "../units.js";
+import type { Label } from "./labels.js";
 import { offset } from "./mercator.js";
 import { boatX, boatY, type Scene } from "./scene.js";
 
@@ -23,7 +24,7 @@ export function alertLines({ picture, state }: Pick<Scene, "picture" | "state">,
 
 /** Those that no track shows: land, what has no number yet, what is not seen any more. Hollow where it was; adds their labels. */
 export function paintAlertPlaces(scene: Scene): void {
-  const { context, picture, plane, theme } = scene;
+  const { context, picture, plane, theme } = scene, labels: Label[] = [];
   for (const alert of picture.alerts) {
     if (!holds(alert) || picture.track_by_id.has(alert.track_id)) continue;
     const place = placeOf(scene, alert);
@@ -38,8 +39,9 @@ export function paintAlertPlaces(scene: Scene): void {
     context.stroke();
     context.setLineDash([]);
     if (x < 0 || y < 0 || x > plane.width_px || y > plane.height_px) continue;
-    scene.labels.push({ x_px: x, y_px: y, radius_px: kMark_px, ...alertLines(scene, alert), colour, isBoxed: !isLost });
+    labels.push({ x_px: x, y_px: y, radius_px: kMark_px, ...alertLines(scene, alert), colour, isBoxed: !isLost });
   }
+  scene.labels.unshift(...labels);
 }
 
 // On the earth where both places are known there, else by distance and bearing from the boat.

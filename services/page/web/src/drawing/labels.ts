@@ -36,18 +36,18 @@ export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], t
   context.textBaseline = "middle";
   context.textAlign = "left";
   context.lineJoin = "round";
-  let numDrawn = 0;
+  const drawn: Box[] = [];
   for (const label of labels) {
-    if (numDrawn >= most) return;
+    if (drawn.length >= most) return;
     const fit = [label.lines, ...(label.shorter ?? [])].map((lines) => {
       const width = Math.max(...lines.map((line) => widthOf(context, line))) + 10, height = kLine_px * lines.length + 4;
       return { lines, width, height, box: placeFor(label, width, height, size, taken) };
     });
     const found = fit.find(({ box }) => box !== null) ?? (label.shorter === undefined ? undefined : fit.at(-1));
     if (found === undefined) continue;
-    const { lines, width, height } = found, box = found.box ?? within(label, width, height, size);
-    ++numDrawn;
+    const { lines, width, height } = found, box = found.box ?? within(label, width, height, size, drawn);
     taken.push(box);
+    drawn.push(box);
     if (label.isBoxed) {
       context.fillStyle = label.colour;
       context.beginPath();
@@ -67,13 +67,17 @@ export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], t
   }
 }
 
-// Beside it, on the screen, whatever it covers.
-function within(label: Pick<Label, "x_px" | "y_px" | "radius_px">, width: number, height: number, size: { width_px: number; height_px: number }): Box {
+// Beside it, on the screen, over marks if it must be, but over no label where any place is left: first to the side with more room.
+const kShifts_px = [0, -22, 22, -44, 44, -66, 66, -88, 88];
+function within(label: Pick<Label, "x_px" | "y_px" | "radius_px">, width: number, height: number, size: { width_px: number; height_px: number }, drawn: readonly Box[]): Box {
   const inside = (at: number, most: number) => Math.max(2, Math.min(at, most - 2));
-  // To the side with more room.
-  const gap = label.radius_px + 6, left = label.x_px > size.width_px / 2 ? label.x_px - gap - width : label.x_px + gap;
-  return { x: inside(left, size.width_px - width), y: inside(label.y_px - height / 2, size.height_px - height), width, height };
+  const gap = label.radius_px + 6, sides = [label.x_px + gap, label.x_px - gap - width];
+  if (label.x_px > size.width_px / 2) sides.reverse();
+  const boxes = kShifts_px.flatMap((shift) => sides.map((left) => (
+    { x: inside(left, size.width_px - width), y: inside(label.y_px - height / 2 + shift, size.height_px - height), width, height })));
+  return boxes.find((box) => drawn.every((other) => isApart(box, other))) ?? boxes[0]!;
 }
+function isApart(a: Box, b: Box): boolean { return a.x + a.width < b.x || b.x + b.width < a.x || a.y + a.height < b.y || b.y + b.height < a.y; }
 
 /** The first of four places around it (right, left, above, below) that is free and on the screen; null: none. */
 export function placeFor(label: Pick<Label, "x_px" | "y_px" | "radius_px">, width: number, height: number, size: { width_px: number; height_px: number }, taken: readonly Box[]): Box | null {
@@ -81,7 +85,7 @@ export function placeFor(label: Pick<Label, "x_px" | "y_px" | "radius_px">, widt
   const places = [[x + gap, y - height / 2], [x - gap - width, y - height / 2], [x - width / 2, y - gap - height], [x - width / 2, y + gap]] as const;
   for (const [left, top] of places) {
     if (left < 2 || top < 2 || left + width > size.width_px - 2 || top + height > size.height_px - 2) continue;
-    if (taken.every((other) => left + width < other.x || other.x + other.width < left || top + height < other.y || other.y + other.height < top)) return { x: left, y: top, width, height };
+    if (taken.every((other) => isApart({ x: left, y: top, width, height }, other))) return { x: left, y: top, width, height };
   }
   return null;
 }

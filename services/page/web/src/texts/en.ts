@@ -194,7 +194,7 @@ export const en = {
       asConfig: "Limits of the config",
       sent: "Sent to the look-out.",
       wrong: (name: string, most: number) => `${name}: a number from 0 to ${most}.`,
-      note: "The look-out keeps them within the bounds of tracker.txtpb, which hold again when it starts anew.",
+      note: "What is left empty is as tracker.txtpb has it. The look-out keeps all within the bounds of that file, and goes back to it when it starts anew.",
     },
     settings: {
       title: "Settings",

@@ -51,6 +51,6 @@ export function whatComes(alert: wire.Alert, picture: Picture, settings: Setting
 export function lineOf(alert: wire.Alert, picture: Picture, settings: Settings): string {
   if (alert.cause === wire.Alert.CAUSE_WATCH || !Number.isFinite(alert.distance_m)) return alert.text;
   const where = `${tight(length(settings, alert.distance_m))}, ${tight(relative(alert.bearing_rad))}`;
-  return [alert.sight === wire.Alert.SIGHT_LOST ? words.lastPlace(where) : where, holds(alert) ? whatComes(alert, picture, settings) : "", alert.is_in_zone ? words.inZone : ""]
+  return [alert.sight === wire.Alert.SIGHT_LOST ? words.lastPlace(where) : where, holds(alert) ? whatComes(alert, picture, settings) : "", holds(alert) && alert.is_in_zone ? words.inZone : ""]
     .filter((part) => part !== "").join(" · ");
 }

@@ -54,13 +54,12 @@ export class Limits {
     state.on(["picture"], () => { this.tell(); });
   }
 
-  /** Fills the form with what is in force. */
+  /** What was typed stays; in harbour what is in force has shrunk by the speed, and is not what is to be set. */
   open(): void {
     setText(this.said, "");
     const report = this.report;
     this.element.hidden = report === null;
     if (report === null) return;
-    for (const [name, field] of this.fields) field.value = String(limitOf(report, name));
     const isHarbour = report.mode === wire.Order.MODE_HARBOUR;
     this.modes.get("harbour")!.checked = isHarbour;
     this.modes.get("open_water")!.checked = !isHarbour;
@@ -72,6 +71,7 @@ export class Limits {
   private tell(): void {
     const { report } = this;
     if (report === null || this.element.closest("dialog")?.open !== true) return;
+    for (const [name, field] of this.fields) field.placeholder = String(limitOf(report, name));
     setText(this.inForce, words.inForce(report.mode === wire.Order.MODE_HARBOUR ? words.modes.harbour : words.modes.open_water, limitOf(report, "guard_zone_range_m"),
       limitOf(report, "guard_zone_from_deg"), limitOf(report, "guard_zone_to_deg"), limitOf(report, "cpa_limit_m")));
   }
