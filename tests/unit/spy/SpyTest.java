@@ -183,11 +183,14 @@ public final class SpyTest {
     alert.level = alert_t.LEVEL_WARNING;
     alert.state = alert_t.STATE_ACTIVE;
     alert.track_id = track_id;
+    alert.name = "boat " + track_id;
     alert.text = "boat: closest approach 3 m in 21 s";
     alerts_t message = new alerts_t();
     message.num_alerts = 1;
     message.alerts = new alert_t[] {alert};
+    message.summary = "";
     message.acknowledged = new lookout.alert_ack_t[0];
+    message.orders = new lookout.order_t[0];
     return message;
   }
 
