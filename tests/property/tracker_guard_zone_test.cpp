@@ -92,9 +92,8 @@ Run Simulate(const std::string& scene_text, int seed, double seconds, const std:
       const auto message = bus::Decode<alerts_t>(bytes).value();
       const bool has_begun = message.seq >= message.begin_seq + 2;  // it lacks the first scans of the log
       const bool is_three_of_five = has_begun && window.back() && std::ranges::count(window, true) >= 3;
-      const bool is_told = std::ranges::any_of(message.alerts, [](const alert_t& alert) {
-        return alert.is_in_zone != 0 && alert.state <= alert_t::STATE_ACKNOWLEDGED;
-      });
+      const bool is_told = std::ranges::any_of(
+          message.alerts, [](const alert_t& alert) { return alert.is_in_zone != 0 && alert.state <= alert_t::STATE_ACKNOWLEDGED; });
       run.num_risen += is_told && !was_told ? 1 : 0;
       was_told = is_told;
       run.num_three_of_five += is_three_of_five ? 1 : 0;

@@ -46,7 +46,8 @@ const ChannelSet kDayWithFused{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEG
 std::string PlanWithFuser(const Request& request) { return InWords(MakeLogPlan(request, kDayWithFused, WithFuser())); }
 
 TEST(MadeUpService, IsPlannedByItsRow) {
-  EXPECT_EQ(PlanWithFuser({}), "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, painter\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(PlanWithFuser({}),
+            "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, painter\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanWithFuser({.only = {"fuser"}}), "ran: fuser\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
   EXPECT_EQ(PlanWithFuser({.from = {"POSE"}, .only = {"fuser", "segmenter", "vlp16"}}),
             "ran: vlp16, segmenter, fuser\nread: LIDAR_PACKETS, POSE, OBSTACLES\n");

@@ -112,17 +112,18 @@ export function compareLabels(first: Picture, second: Picture, a: Int16Array | n
     else if (Math.abs(same.cpa_m - track.cpa_m) >= kOtherApproach_m && Math.max(same.tcpa_s, track.tcpa_s) > 0) tracks.push({ first: track, second: same, what: "approach" });
   }
   for (const track of toldOf(second)) if (!seconds.has(track.id)) tracks.push({ first: null, second: track, what: "only" });
-  // An alert is the same when its cause is, and its track goes together with the other's.
+  // An alert is of a thing: the same when its track goes together with the other's; without a track when it is called the same.
   const partner = new Map([...pairs].map(([one, two]) => [one.id, two.id]));
-  const has = (picture: Picture, cause: number, track: number) => picture.alerts.some((alert) => alert.cause === cause && alert.track_id === track && isAlertTold(alert));
+  const has = (picture: Picture, { track_id, name }: Alert, of: ReadonlyMap<number, number>) => picture.alerts.some((alert) =>
+    isAlertTold(alert) && (track_id === 0 ? alert.track_id === 0 && alert.name === name : alert.track_id === of.get(track_id)));
   const back = new Map([...partner].map(([one, two]) => [two, one]));
   return {
     isSameScan: true, numReturns, otherReturns: other.slice(0, numOther),
     segmentsOnlyInFirst: first.segments.map((segment) => segment.id).filter((id) => !segments.has(id)),
     segmentsOnlyInSecond: second.segments.map((segment) => segment.id).filter((id) => !paired.has(id)),
     tracks,
-    alertsOnlyInFirst: first.alerts.filter((alert) => isAlertTold(alert) && !has(second, alert.cause, partner.get(alert.track_id) ?? (alert.track_id === 0 ? 0 : -1))),
-    alertsOnlyInSecond: second.alerts.filter((alert) => isAlertTold(alert) && !has(first, alert.cause, back.get(alert.track_id) ?? (alert.track_id === 0 ? 0 : -1))),
+    alertsOnlyInFirst: first.alerts.filter((alert) => isAlertTold(alert) && !has(second, alert, partner)),
+    alertsOnlyInSecond: second.alerts.filter((alert) => isAlertTold(alert) && !has(first, alert, back)),
   };
 }
 
@@ -136,7 +137,7 @@ export function mattering({ isSameScan, otherReturns, numReturns, tracks, alerts
   ];
 }
 export function nameOfTrack({ what, first, second }: TrackDifference): string { return `${what} ${first?.id ?? "–"} ${second?.id ?? "–"}`; }
-export function nameOfAlert(alert: Alert, side: "first" | "second"): string { return `alert ${side} ${alert.cause} ${alert.track_id}`; }
+export function nameOfAlert(alert: Alert, side: "first" | "second"): string { return `alert ${side} ${alert.track_id === 0 ? alert.name : alert.track_id}`; }
 
 const kForgotten_scans = 20;
 
