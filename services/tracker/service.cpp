@@ -272,7 +272,7 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
 std::optional<Danger> Service::LookAtZone(const ScanInput& input) {
   auto& zone_sight = memory_->zone_sight;
   if (input.sweep) zone_sight.Update(input.end_time, *input.sweep);
-  const auto danger = zone_sight.danger();
+  auto danger = zone_sight.danger();
   if (danger) memory_->zone_text = TextOf(zone_sight.parts(), zone_sight.is_whole());
   return danger;
 }

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kMaxLimit_m = 10'000.0;  // the tracker has bounds of its own
+constexpr double kMaxLimitM = 10'000.0;  // the tracker has bounds of its own
 constexpr std::int64_t kMaxScansOn = 1'000'000;
 static_assert(bus::kChannels.size() <= kMaxChannels);
 
@@ -134,10 +134,10 @@ Order ReadOrder(Reader& reader) {
   const auto mode = reader.Text("mode");
   if (mode != "open_water" && mode != "harbour") reader.Fail("its mode is not known");
   if (mode == "harbour") order.mode = Order::Mode::kHarbour;
-  order.guard_zone_range_m = reader.Number("guard_zone_range_m", 0.0, kMaxLimit_m);
+  order.guard_zone_range_m = reader.Number("guard_zone_range_m", 0.0, kMaxLimitM);
   order.guard_zone_from_deg = reader.Number("guard_zone_from_deg", 0.0, 360.0);
   order.guard_zone_to_deg = reader.Number("guard_zone_to_deg", 0.0, 360.0);
-  order.cpa_limit_m = reader.Number("cpa_limit_m", 0.0, kMaxLimit_m);
+  order.cpa_limit_m = reader.Number("cpa_limit_m", 0.0, kMaxLimitM);
   return order;
 }
 
