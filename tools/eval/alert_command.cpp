@@ -29,6 +29,7 @@
 #include "tools/eval/alert_run.hpp"
 #include "tools/eval/alert_tables.hpp"
 #include "tools/eval/figures.hpp"
+#include "tools/eval/table_files.hpp"
 #include "tools/eval/track_sources.hpp"
 #include "tools/eval/track_tables.hpp"
 #include "tools/replay/chain.hpp"
@@ -247,13 +248,7 @@ int EvaluateAlerts(const AlertOptions& options) {
   if (!options.kept_folder.empty()) fs::create_directories(options.kept_folder);
   // Outputs before all work.
   FillBlocksOf(options.block_files, {});
-  std::vector<std::unique_ptr<io::OutputFile>> files;
-  if (!options.csv_folder.empty()) {
-    fs::create_directories(options.csv_folder);
-    for (const auto& table : AlertTablesOf({})) {
-      files.push_back(std::make_unique<io::OutputFile>(options.csv_folder / (table.name + ".csv"), io::OutputOptions{.force = options.is_forced}));
-    }
-  }
+  TableFiles files(options.csv_folder, AlertTablesOf({}), options.is_forced);
   std::optional<io::OutputFile> list;
   if (!options.list_file.empty()) {
     list.emplace(options.list_file, io::OutputOptions{.force = options.is_forced});
@@ -294,10 +289,7 @@ int EvaluateAlerts(const AlertOptions& options) {
   }
   std::cerr << fmt::format("lookout-eval: {:.2f} h of runs in {:.0f} s: {:.1f} times real time, {} at once\n", seconds / 3600.0, took.count(),
                            seconds / took.count(), options.num_jobs);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    tables[i].table.PrintCsv(files[i]->stream());
-    files[i]->Commit();
-  }
+  files.Commit(tables);
   if (!options.block_files.empty()) FillBlocksOf(options.block_files, AlertFiguresOf(options, has_captures, tables));
   return EXIT_SUCCESS;
 }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
@@ -19,6 +18,7 @@
 #include "config/schema/tracker.pb.h"
 #include "tools/eval/baselines/nearest_neighbour.hpp"
 #include "tools/eval/figures.hpp"
+#include "tools/eval/table_files.hpp"
 #include "tools/eval/track_run.hpp"
 #include "tools/eval/track_sources.hpp"
 #include "tools/eval/track_tables.hpp"
@@ -163,13 +163,7 @@ int EvaluateTracks(const TrackOptions& options) {
   io::CatchStopSignals();
   // Outputs before all work.
   FillBlocksOf(options.block_files, {});
-  std::vector<std::unique_ptr<io::OutputFile>> files;
-  if (!options.csv_folder.empty()) {
-    fs::create_directories(options.csv_folder);
-    for (const auto& table : AllTablesOf({})) {
-      files.push_back(std::make_unique<io::OutputFile>(options.csv_folder / (table.name + ".csv"), io::OutputOptions{.force = options.is_forced}));
-    }
-  }
+  TableFiles files(options.csv_folder, AllTablesOf({}), options.is_forced);
   std::optional<io::OutputFile> lost;
   if (!options.lost_file.empty()) {
     lost.emplace(options.lost_file, io::OutputOptions{.force = options.is_forced});
@@ -187,10 +181,7 @@ int EvaluateTracks(const TrackOptions& options) {
   if (lost) lost->Commit();
   const auto tables = AllTablesOf(worlds);
   PrintTables(tables, std::cout);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    tables[i].table.PrintCsv(files[i]->stream());
-    files[i]->Commit();
-  }
+  files.Commit(tables);
   if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(options, has_captures, tables));
   return EXIT_SUCCESS;
 }

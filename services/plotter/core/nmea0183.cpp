@@ -116,7 +116,8 @@ std::string AlertWithin(std::string text, std::size_t max_bytes) {
   return FieldText(text, max_bytes);
 }
 
-int IdentifierOf(Cause cause) { return kFirstIdentifier + static_cast<int>(cause); }
+// Which cause weighs most may change while one thing stays dangerous: who was told of it by one identifier must be told of its end by the same.
+int IdentifierOf(Cause cause) { return kFirstIdentifier + static_cast<int>(cause == Cause::kGuardZone ? Cause::kClosestApproach : cause); }
 
 // 1 to 999999; the watch's ids run from -1 down, and of the plotter's own there is one of a cause.
 std::int64_t InstanceOf(const Notice& notice) { return notice.id == 0 ? 1 : (std::abs(notice.id) - 1) % kMostInstance + 1; }
@@ -124,7 +125,6 @@ std::int64_t InstanceOf(const Notice& notice) { return notice.id == 0 ? 1 : (std
 std::string_view TitleOf(Cause cause) {
   switch (cause) {
     case Cause::kGuardZone:
-      return "GUARD ZONE";
     case Cause::kClosestApproach:
       return "CLOSE APPROACH";
     case Cause::kPosition:

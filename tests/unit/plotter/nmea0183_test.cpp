@@ -151,6 +151,9 @@ TEST(PlotterNmea, SaysAnAlertAsAlf) {
   const auto text = Alf("RA", notice, test::kTime, 4, 2);
   EXPECT_EQ(text,
             Sentence("RAALF,2,1,4,102030.45,B,W,V,LKO,10002,3,2,0,CLOSE APPROACH") + Sentence("RAALF,2,2,4,,,,,,,,,,boat 17: closest approach 3 m"));
+  // A receiver that was told of it by one identifier is told of its end by the same.
+  notice.cause = Cause::kGuardZone;
+  EXPECT_EQ(Alf("RA", notice, test::kTime, 4, 2), text);
   notice.level = Level::kCaution;
   EXPECT_NE(Alf("RA", notice, test::kTime, 4, 2).find(",B,C,A,LKO,"), std::string::npos);
   notice.state = NoticeState::kCleared;
@@ -174,6 +177,8 @@ TEST(PlotterNmea, ReadsWhichAlertIsAcknowledged) {
   EXPECT_TRUE(Means(acn, notice));
   auto other_cause = notice;
   other_cause.cause = Cause::kGuardZone;
+  EXPECT_TRUE(Means(acn, other_cause)) << "one danger is one alert, whichever cause weighs most now";
+  other_cause.cause = Cause::kWatch;
   EXPECT_FALSE(Means(acn, other_cause));
 
   EXPECT_EQ(read("IIACN,102031.00,LKO,10002,3,S,C").first, LineKind::kOther);  // silenced only
