@@ -329,7 +329,8 @@ std::optional<Fault> FaultOf(const order_t& message) {
   if (message.kind != order_t::KIND_SETTINGS || message.mode < order_t::MODE_OPEN_WATER || message.mode > order_t::MODE_HARBOUR) return kOrderKind;
   const auto is_bad = [](float value) { return std::isinf(value); };
   if (is_bad(message.guard_zone_range_m) || is_bad(message.guard_zone_from_rad) || is_bad(message.guard_zone_to_rad) || is_bad(message.cpa_limit_m) ||
-      message.guard_zone_range_m < 0.0F || message.cpa_limit_m < 0.0F) {
+      message.guard_zone_range_m < 0.0F || message.cpa_limit_m < 0.0F ||
+      std::isnan(message.guard_zone_from_rad) != std::isnan(message.guard_zone_to_rad)) {
     return kOrderNumber;
   }
   return std::nullopt;

@@ -143,6 +143,8 @@ Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file) 
   params.tracker.confirm_probability = message->confirm_probability();
   params.tracker.end_probability = message->end_probability();
   params.look_out = ToLookOut(*message, zone);
+  const Eigen::AlignedBox2d own_box_m(boat->own_vessel_box_m.min().head<2>(), boat->own_vessel_box_m.max().head<2>());
+  params.look_out.limits.own_reach_m = own_box_m.min().cwiseAbs().cwiseMax(own_box_m.max().cwiseAbs()).norm();
   params.wait_timeout = std::chrono::round<std::chrono::microseconds>(std::chrono::duration<double>(message->wait_timeout_s()));
   return params;
 }

@@ -123,7 +123,9 @@ void Service::OnAcknowledgement(const alert_ack_t& message) {
 void Service::OnOrder(const order_t& message) {
   if (const auto fault = messages::FaultOf(message)) return orders_refused_.Add(*fault);
   if (given_.script) return;
-  if (orders_.size() >= kMaxOrders) {
+  // Silence is of what sounds now. Where no scan comes it would wait, and begin with the look-out.
+  const bool is_late = message.kind == order_t::KIND_SILENCE && watch_.is_failing();
+  if (is_late || orders_.size() >= kMaxOrders) {
     ++counts_["orders_dropped"];
   } else {
     orders_.push_back(ToOrder(message));
@@ -260,9 +262,7 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
   auto taken = std::exchange(orders_, {});
   for (const auto& order : taken) memory_->look_out.Take(order, input.end_time);
   if (std::ranges::any_of(taken, [](const Order& order) { return order.kind == OrderKind::kSettings; })) {
-    auto params = params_.zone_sight;
-    params.zone = memory_->look_out.WholeZone();
-    memory_->zone_sight = ZoneSight(params);
+    memory_->zone_sight.SetZone(memory_->look_out.WholeZone());
   }
   counts_["orders_taken"] += static_cast<std::int64_t>(taken.size());
   return taken;

@@ -138,6 +138,7 @@ Order ReadOrder(Reader& reader) {
   order.guard_zone_from_deg = reader.Number("guard_zone_from_deg", 0.0, 360.0);
   order.guard_zone_to_deg = reader.Number("guard_zone_to_deg", 0.0, 360.0);
   order.cpa_limit_m = reader.Number("cpa_limit_m", 0.0, kMaxLimitM);
+  if (reader.Has("guard_zone_from_deg") != reader.Has("guard_zone_to_deg")) reader.Fail("one end of the sector is missing");
   return order;
 }
 

@@ -371,7 +371,9 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
   for (auto item = entries_.begin(); item != entries_.end(); ++item) {
     const auto& [other, entry] = *item;
     if (!entry.alert || entry.alert->place_map_m.hasNaN()) continue;
-    const bool is_free = IsOfTrack(other) ? entry.lost || entry.is_over : other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
+    // What was lost; not what is over and goes on where it is clear.
+    const bool was_lost = entry.lost || (entry.is_over && (entry.alert->end == AlertEnd::kHidden || entry.alert->end == AlertEnd::kGone));
+    const bool is_free = IsOfTrack(other) ? was_lost : other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
     // Something else that comes by there was seen before.
     const Utime since = IsOfTrack(other) ? entry.alert->seen : entry.alert->raised;
     if (!is_free || danger.first < since - kBeganBefore) continue;
@@ -467,6 +469,7 @@ void Alerts::Rename(std::int64_t from_thing, std::int64_t to_thing, Utime time) 
     const bool is_open = goes.alert->state == AlertState::kActive || stays.alert->state != AlertState::kAcknowledged;
     SetState(*stays.alert, is_open ? AlertState::kActive : AlertState::kAcknowledged, time);
     SetLevel(*stays.alert, std::max(stays.alert->level, goes.alert->level), time);
+    stays.alert->end = AlertEnd::kNone;
     for (std::size_t i = 0; i < stays.causes.size(); ++i) stays.causes[i].Merge(goes.causes[i]);
     stays.warning.Merge(goes.warning);
     if (!is_open && stays.told) stays.told->Tell(time, std::array{PlaceOf(*goes.alert)});

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -107,7 +108,7 @@ class KnownThings {
       known_.push_back({things.ThingOf(track.id), &track, InVessel(track.outline_m, own)});
     }
     for (const auto& outline : outlines) {
-      if (outline.is_land) known_.push_back({kLandTrack, nullptr, outline.corners_m});
+      if (outline.is_land) known_.push_back({kLandTrack, nullptr, outline.corners_m, outline.is_line});
     }
   }
 
@@ -115,6 +116,16 @@ class KnownThings {
     std::int64_t thing;
     const Track* track;
     std::vector<Eigen::Vector2d> corners_m;  // as the vessel sees it
+    bool is_line = false;                    // open: the mouth of a harbour is no land
+
+    double GapTo(const Eigen::Vector2d& place_m) const {
+      if (!is_line || corners_m.size() < 3) return GapOf(corners_m, {&place_m, 1}).distance_m;
+      double least_m = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i + 1 < corners_m.size(); ++i) {
+        least_m = std::min(least_m, GapOf(std::span(corners_m).subspan(i, 2), {&place_m, 1}).distance_m);
+      }
+      return least_m;
+    }
   };
   // nullptr: it belongs to none.
   const Known* Find(const NearestPoint& point) const {
@@ -123,7 +134,7 @@ class KnownThings {
     const Known* nearest = nullptr;
     double least_m = kPartM;
     for (const auto& known : known_) {
-      const double away_m = GapOf(known.corners_m, {&place_m, 1}).distance_m;
+      const double away_m = known.GapTo(place_m);
       if (away_m > least_m) continue;
       least_m = away_m;
       nearest = &known;
@@ -207,6 +218,7 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
       if (!known) known.emplace(picture, outlines, things, *own);
       if (const auto* of = known->Find(*point)) {
         in_zone[of->thing].Add(*point, of->track, true, 1.0);
+        if (of->thing == kLandTrack) shore.Add(*point);  // so that an acknowledgement of the shore does not cover it
         return;
       }
     }
@@ -277,7 +289,7 @@ bool StillWatch::Update(Utime time, const Eigen::Vector2d& velocity_mps) {
 std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const Picture& picture, const std::optional<Pose>& own, bool is_own_still,
                                            const Things& things, const Proof* proof, Utime time) {
   if (!own) return {};
-  const double own_mps = own->velocity_map_mps.allFinite() ? own->velocity_map_mps.norm() : 0.0;
+  const double own_mps = own->velocity_map_mps.allFinite() ? own->velocity_map_mps.norm() : std::numeric_limits<double>::infinity();
   const double needed_s = TimeToAct(own_mps, params.ability);
   const auto add_approach = [needed_s](const ClosestApproach& approach, double limit_m, Danger& danger) {
     danger.probability = approach.probability;

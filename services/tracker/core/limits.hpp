@@ -16,7 +16,9 @@ struct LimitParams {
   double most_guard_zone_m = 1000.0;
   double least_cpa_limit_m = 0.1;
   double most_cpa_limit_m = 500.0;
-  // In harbour: beyond the way that is gone before the boat stops.
+  // Of own_vessel from the reference point, to its farthest corner: a zone within it sees nothing.
+  double own_reach_m = 0.0;
+  // In harbour: beyond own_vessel and the way that is gone before the boat stops.
   double harbour_margin_m = 2.0;
   double harbour_cpa_limit_m = 1.0;  // the least
 };
@@ -27,9 +29,10 @@ struct Limits {
   double cpa_limit_m = 0.0;
 };
 
-/// In harbour both shrink with the own speed, and never grow beyond what is set: the zone to the way that the boat goes before it stops and a margin,
-/// the closest approach to half of that way.
-/// @param settings    NaN: as the config says; its mode counts
+/// In harbour both shrink with the own speed, and never grow beyond what is set: the zone to own_vessel, the way that the boat goes before it stops
+/// and a margin; the closest approach to half of that way. Where the speed is not known neither shrinks.
+/// @param settings  NaN: as the config says; its mode counts. A sector of 0 to 360 deg, or of none, is all round
+/// @param own_mps   NaN: not known
 Limits LimitsOf(const LimitParams& params, const Settings& settings, double own_mps, const OwnAbility& ability);
 
 }  // namespace lookout::tracker

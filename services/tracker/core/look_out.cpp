@@ -7,7 +7,7 @@ namespace lookout::tracker {
 
 namespace {
 
-double SpeedOf(const std::optional<Pose>& own) { return own && own->velocity_map_mps.allFinite() ? own->velocity_map_mps.norm() : 0.0; }
+double SpeedOf(const std::optional<Pose>& own) { return own && own->velocity_map_mps.allFinite() ? own->velocity_map_mps.norm() : kNan; }
 
 }  // namespace
 
@@ -37,7 +37,7 @@ void LookOut::Rename(const Picture& picture, Utime time) {
     alerts_.Rename(from, things_.ThingOf(to), time);
   }
   proof_.Update(picture.tracks);
-  if (!picture.waterline_m.empty()) shore_m_ = picture.waterline_m;
+  if (picture.is_waterline_told) shore_m_ = picture.waterline_m;
   things_.Update(time, picture.tracks, shore_m_);
   for (const auto& [from, to] : things_.merged()) alerts_.Rename(from, to, time);
 }

@@ -45,10 +45,14 @@ class LookOut {
   const std::vector<Alert>& Update(Utime time, bool is_whole, const Picture& picture, std::span<const VesselOutline> outlines,
                                    const std::optional<Pose>& own, const std::optional<Danger>& unseen);
 
-  void ForgetMap() { alerts_.ForgetMap(); }
+  void ForgetMap() {
+    alerts_.ForgetMap();
+    shore_m_.clear();
+  }
   void ForgetTracks() {
     things_.Clear();
     proof_.Clear();
+    shore_m_.clear();
   }
 
   const std::vector<Alert>& alerts() const { return alerts_.alerts(); }

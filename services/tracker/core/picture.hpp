@@ -60,7 +60,8 @@ struct Picture {
   /// What each piece of the scan is of, by its number less one: the id of a track, 0 land, kNoTrack nothing that is followed. Of a Sweep without
   /// pieces by the id of its segment less one.
   std::vector<std::int64_t> track_of_piece;
-  std::vector<Eigen::Vector2d> waterline_m;   // every tenth scan, else empty
+  std::vector<Eigen::Vector2d> waterline_m;  // remembered land with water before it; told every tenth scan, else empty
+  bool is_waterline_told = false;
   std::optional<LandApproach> land_approach;  // nullopt: the own boat hardly moves, its pose is not known, or no land is near its way
   /// Tracks that became part of another in this scan, and tentative ones that got their number (from, to).
   std::vector<std::pair<std::int64_t, std::int64_t>> merged;

@@ -18,6 +18,8 @@ void Proof::Update(std::span<const Track> tracks) {
     const double way_m = (track.position_m - course.begin_m).norm();
     const bool is_long_enough = seen_s >= std::clamp(speed_mps / kGainMps2, kLeastS, kMostS);
     if (is_long_enough && way_m >= kShareOfWay * speed_mps * seen_s) course.is_proven = true;
+    // It swung at its mooring; how it runs now is another course.
+    if (!course.is_proven && seen_s > 2.0 * kMostS) course = {track.seen, track.position_m, false};
   }
   std::erase_if(courses_, [&ids](const auto& item) { return !ids.contains(item.first); });
 }

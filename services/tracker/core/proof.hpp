@@ -13,7 +13,8 @@ namespace lookout::tracker {
 
 /// Where one of two pieces of a hull or a crest behind another is taken for the thing itself, it seems to run, as fast as both are apart, and is gone
 /// a second later. A boat gets where its course says that it gets. So what is faster than kFastMps is proven when it was seen for as long as a boat
-/// needs to gain that speed, a second at least, and has gone half of the way by then. Slower things leave time enough to be wrong about.
+/// needs to gain that speed, a second at least, and has gone half of the way by then. What has not shown itself for 6 s begins anew. Slower things
+/// leave time enough to be wrong about.
 class Proof {
  public:
   static constexpr double kFastMps = 1.0;

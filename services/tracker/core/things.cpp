@@ -48,6 +48,7 @@ void Things::Update(Utime time, std::span<const Track> tracks, std::span<const E
     member.is_of_structure = member.is_of_structure || IsStructure(track);
   }
   std::erase_if(members_, [&ids](const auto& item) { return !ids.contains(item.first); });
+  RenameOrphans();
   for (const auto* track : standing) {
     const auto& member = members_.at(track->id);
     if (member.thing == kLandTrack || ToSeconds(time - member.stands_since) < kStandsS) continue;
@@ -63,6 +64,17 @@ void Things::Update(Utime time, std::span<const Track> tracks, std::span<const E
       if (!IsWithin(*track, *other, belongs ? kBesideM : kTouchM)) continue;
       Join(std::max(own.thing, with.thing), std::min(own.thing, with.thing));
     }
+  }
+}
+
+// A thing is named by its first track. Where that casts off, what stays is not of it any more.
+void Things::RenameOrphans() {
+  std::map<std::int64_t, std::int64_t> renamed;
+  for (auto& [track, member] : members_) {
+    if (member.thing == kLandTrack || members_.contains(member.thing)) continue;
+    const auto [name, is_first] = renamed.try_emplace(member.thing, track);
+    if (is_first) merged_.emplace_back(member.thing, track);
+    member.thing = name->second;
   }
 }
 

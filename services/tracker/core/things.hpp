@@ -33,7 +33,7 @@ class Things {
   std::int64_t ThingOf(std::int64_t track_id) const;
   /// Whether it is of more than one track.
   bool IsGroup(std::int64_t thing) const;
-  /// In the last Update: things that became part of others (from, to).
+  /// In the last Update: things that became part of others, or are called otherwise since the track left that named them (from, to).
   const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
 
  private:
@@ -44,6 +44,7 @@ class Things {
     bool is_of_structure = false;  // it is one, or of one
   };
   void Join(std::int64_t from_thing, std::int64_t to_thing);
+  void RenameOrphans();
 
   std::map<std::int64_t, Member> members_;  // by track
   std::vector<std::pair<std::int64_t, std::int64_t>> merged_;

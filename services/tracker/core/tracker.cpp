@@ -138,6 +138,7 @@ void Tracker::Memory::LookAtLand(const Pose& here, const Moving& self, const Enc
   known.land.Forget(place_m);
   if (num_scans++ % kWaterlineEvery == 0) {
     picture.waterline_m = known.land.Waterline(place_m, kWaterlineRangeM, kMostWaterline);
+    picture.is_waterline_told = true;
     shore_m = picture.waterline_m;
   }
   if (!self.velocity_mps.isZero(0.0)) picture.land_approach = ApproachToLand(here, self, shore_m, params, kOwnVelocitySdMps);

@@ -262,6 +262,19 @@ void ZoneSight::Update(Utime time, const Sweep& sweep) {
   Tell();
 }
 
+void ZoneSight::SetZone(const GuardZoneParams& zone) {
+  auto& known = params_.zone;
+  if (zone.range_m == known.range_m && zone.bearing.start_rad == known.bearing.start_rad && zone.bearing.width_rad == known.bearing.width_rad) return;
+  known = zone;
+  grid_.reset();
+  share_.clear();
+  why_.clear();
+  told_.clear();
+  wide_.clear();
+  is_whole_ = false;
+  unseen_deg_ = 0;
+}
+
 void ZoneSight::Trace(const Sweep& sweep) {
   constexpr float kFree = std::numeric_limits<float>::infinity();
   const std::size_t num_rings = sweep.elevation_rad.size();

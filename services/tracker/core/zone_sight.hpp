@@ -125,6 +125,8 @@ class ZoneSight {
   explicit ZoneSight(const ZoneSightParams& params) : params_(params) {}
 
   void Update(Utime time, const Sweep& sweep);
+  /// Another one is looked at anew; the same changes nothing.
+  void SetZone(const GuardZoneParams& zone);
 
   /// Worth an alert, the largest first.
   const std::vector<UnseenPart>& parts() const { return wide_; }

@@ -238,6 +238,20 @@ TEST_F(AlertsOfTracks, DoNotPassToWhatWasSeenElsewhereBefore) {
   EXPECT_EQ(other->id, 2);
 }
 
+// A second boat comes out of the lee of one whose alert was acknowledged and is over: it was born acknowledged, and never rang.
+TEST_F(AlertsOfTracks, DoNotPassFromABoatThatIsStillThere) {
+  Show({Known(5)});
+  Scans(5, {At(5, 0.0, 20.0)});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(40, {});
+  EXPECT_TRUE(std::ranges::none_of(alerts_.alerts(), &Alert::Holds));
+  Show({Known(5), Known(9)});
+  Scans(5, {At(9, 3.0, 20.0)});
+  EXPECT_EQ(Only().thing, 9);
+  EXPECT_EQ(Only().id, 2);
+  EXPECT_EQ(Only().state, AlertState::kActive);
+}
+
 TEST_F(AlertsOfTracks, KeepWhatHadNoNameWhenItGetsOne) {
   auto unnamed = Zone(kUnnamed);
   unnamed.place_map_m = {1.0, 7.0};

@@ -122,6 +122,31 @@ TEST(GuardZoneDangers, OfLandTellTheNearestOfEachBearing) {
   EXPECT_NEAR(least_m, dangers[0].distance_m, 1e-9);
 }
 
+// Somebody swims beside a quay that was acknowledged: his place is told with those of the quay, or nobody would hear of him.
+TEST(GuardZoneDangers, OfLandTellWhatComesUpBesideIt) {
+  Picture picture;
+  const std::vector<VesselOutline> outlines{Land(1, {{9.0, -20.0}, {9.0, 20.0}}), Ahead(2, 7.5)};
+  Newcomers newcomers;
+  Things things;
+  const auto dangers = GuardZoneDangers(kZone, picture, outlines, Own(), things, &newcomers, Utime{});
+  ASSERT_EQ(dangers.size(), 1U);
+  EXPECT_EQ(dangers[0].thing, kLandTrack);
+  EXPECT_NEAR(std::ranges::min_element(dangers[0].places, {}, &DangerPlace::range_m)->range_m, 7.5, 1e-9);
+}
+
+// The shore of a basin is an open line: what lies in its mouth is no part of it.
+TEST(GuardZoneDangers, OfLandAreNotInTheMouthOfAHarbour) {
+  Picture picture;
+  const std::vector<VesselOutline> outlines{Land(1, {{6.0, 20.0}, {40.0, 20.0}, {40.0, -20.0}, {6.0, -20.0}}), Ahead(2, 6.0)};
+  Newcomers newcomers;
+  Things things;
+  constexpr std::chrono::milliseconds kScan(100);
+  std::vector<Danger> dangers;
+  for (int scan = 0; scan < 20; ++scan) dangers = GuardZoneDangers(kZone, picture, outlines, Own(), things, &newcomers, Utime{} + scan * kScan);
+  ASSERT_EQ(dangers.size(), 1U);
+  EXPECT_EQ(dangers[0].thing, kUnnamed);
+}
+
 TEST(GuardZoneDangers, OfWhatHasNoTrackTellEachThing) {
   const auto dangers = GuardZoneDangers(kZone, {}, std::vector{Ahead(4, 8.0), Ahead(5, 9.5), Ahead(6, 12.0)}, std::nullopt);
   ASSERT_EQ(dangers.size(), 1U);

@@ -163,6 +163,23 @@ TEST_F(LookOutTest, WarnsOfABoatThatHasGoneWhereItsCourseLed) {
   EXPECT_EQ(look_out_.alerts()[0].sight, AlertSight::kSeen);
 }
 
+// A boat that swung at its mooring for two minutes casts off: its way was measured from the first swing, and for two minutes more it was a ghost.
+TEST_F(LookOutTest, WarnsOfABoatThatSwungForLongBefore) {
+  double north_m = 90.0;
+  double north_mps = 0.3;
+  const auto boat = [&] {
+    auto track = At(9, 1.0, north_m);
+    track.velocity_mps = {0.0, -north_mps};
+    track.approach = {.distance_m = north_m, .cpa_m = 1.0, .tcpa_s = north_m / north_mps, .probability = 0.95};
+    return track;
+  };
+  for (int scan = 0; scan < 1200; ++scan) Scan({boat()});
+  north_mps = 6.0;
+  for (; north_m > 35.0; north_m -= 0.6) Scan({boat()});
+  ASSERT_EQ(look_out_.alerts().size(), 1U);
+  EXPECT_EQ(look_out_.alerts()[0].level, AlertLevel::kWarning);
+}
+
 // An island 60 m ahead at 1.2 kn is neither a warning nor a caution: it is 100 s off. Nor is a quay that the boat goes along.
 TEST_F(LookOutTest, LeavesWhatIsFarInTimeOrBesideTheBoatAtACautionAtMost) {
   auto pile = At(3, 3.0, 3.0);

@@ -60,6 +60,23 @@ TEST_F(ThingsTest, OfABoatAtItsPierIsThePierUntilItCastsOff) {
   EXPECT_EQ(things_.ThingOf(2), 2);
 }
 
+// The boat was followed first, so the pier beside it bore its number: as it cast off, both were one thing for ever.
+TEST_F(ThingsTest, OfWhatStaysAreNoneOfTheBoatThatCastsOff) {
+  auto boat = Standing(2, 0.0, 5.0, 3.0);
+  const auto pier = Standing(4, 0.0, 30.0);
+  const auto pile = Standing(7, 0.0, 1.0, -2.0);
+  Scans(5, {boat, pier, pile});
+  EXPECT_EQ(things_.ThingOf(4), 2);
+  boat.velocity_mps = {0.0, 0.8};
+  merged_.clear();
+  Scans(2, {boat, pier, pile});
+  EXPECT_EQ(things_.ThingOf(2), 2);
+  EXPECT_FALSE(things_.IsGroup(2));
+  EXPECT_EQ(things_.ThingOf(4), 4);
+  EXPECT_EQ(things_.ThingOf(7), 4);
+  EXPECT_EQ(merged_, (std::vector<std::pair<std::int64_t, std::int64_t>>{{2, 4}}));
+}
+
 TEST_F(ThingsTest, OfShoreWithAllThatStandsBesideItAreLand) {
   std::vector<Eigen::Vector2d> shore_m;
   for (double east_m = -20.0; east_m < 20.0; east_m += 0.5) shore_m.emplace_back(east_m, -2.0);

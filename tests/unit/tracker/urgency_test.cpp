@@ -52,6 +52,37 @@ TEST(Limits, AreThoseOfTheConfigUntilSomebodySetsThem) {
   EXPECT_EQ(LimitsOf(params, {.guard_zone_range_m = 0.0}, 3.0, kBoat).guard_zone.range_m, 0.0) << "none";
 }
 
+// As single precision has it on the wire, 0 to 360 deg is a little more than a turn: the zone was a sector of nothing.
+TEST(Limits, OfAWholeTurnAreAllRound) {
+  LimitParams params;
+  params.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
+  for (const double to_deg : {360.0, 0.0}) {
+    const auto to_rad = static_cast<double>(static_cast<float>(DegToRad(to_deg)));
+    const auto limits = LimitsOf(params, {.guard_zone_from_rad = 0.0, .guard_zone_to_rad = to_rad}, 3.0, kBoat);
+    EXPECT_EQ(limits.guard_zone.bearing.width_rad, kTwoPi) << to_deg;
+    EXPECT_TRUE(limits.guard_zone.bearing.Contains(DegToRad(200.0))) << to_deg;
+  }
+}
+
+// Within own_vessel all is own boat: such a zone could never ring.
+TEST(Limits, ReachBeyondTheOwnBoat) {
+  LimitParams params;
+  params.guard_zone = {.range_m = 10.0, .bearing = {0.0, kTwoPi}};
+  params.own_reach_m = 3.0;
+  EXPECT_EQ(LimitsOf(params, {.guard_zone_range_m = 1.0}, 1.0, kBoat).guard_zone.range_m, 3.0);
+  EXPECT_NEAR(LimitsOf(params, {.mode = Mode::kHarbour}, 0.0, kBoat).guard_zone.range_m, 5.0, 1e-9);
+}
+
+// When nobody knows how fast the boat goes is no time to look less far.
+TEST(Limits, DoNotShrinkWhereTheSpeedIsNotKnown) {
+  LimitParams params;
+  params.guard_zone = {.range_m = 10.0, .bearing = {0.0, kTwoPi}};
+  params.cpa_limit_m = 5.0;
+  const auto limits = LimitsOf(params, {.mode = Mode::kHarbour}, kNan, kBoat);
+  EXPECT_EQ(limits.guard_zone.range_m, 10.0);
+  EXPECT_EQ(limits.cpa_limit_m, 5.0);
+}
+
 TEST(Limits, ShrinkWithTheOwnSpeedInHarbour) {
   LimitParams params;
   params.guard_zone = {.range_m = 10.0, .bearing = {0.0, kTwoPi}};

@@ -12,6 +12,7 @@ test("a sector over the bow is told from 0 to 360 deg, and a whole circle stays 
   assert.equal(limitOf(report, "guard_zone_from_deg"), 300);
   assert.equal(limitOf(report, "guard_zone_to_deg"), 60);
   assert.equal(limitOf({ ...report, guard_zone_from_rad: 0, guard_zone_to_rad: 2 * Math.PI }, "guard_zone_to_deg"), 360);
+  assert.equal(limitOf({ ...report, guard_zone_from_rad: 0, guard_zone_to_rad: Math.fround(2 * Math.PI) }, "guard_zone_to_deg"), 360);  // as it comes over the wire
 });
 
 test("the zone in force is drawn, not that of the config", () => {

@@ -191,6 +191,7 @@ export const en = {
       inForce: (mode: string, range: number, from: number, to: number, cpa: number) =>
         `In force: ${mode}; ${range > 0 ? `guard zone ${range} m, ${from}° to ${to}°` : "no guard zone"}; closest approach ${cpa} m.`,
       set: "Set",
+      unset: "as configured",
       asConfig: "Limits of the config",
       sent: "Sent to the look-out.",
       wrong: (name: string, most: number) => `${name}: a number from 0 to ${most}.`,

@@ -15,7 +15,7 @@ const kMost: Record<Name, number> = { guard_zone_range_m: 1000, guard_zone_from_
 export function limitOf(report: wire.Alerts, name: Name): number {
   if (name === "guard_zone_range_m" || name === "cpa_limit_m") return Number(report[name].toFixed(1));
   const degrees = (name === "guard_zone_from_deg" ? report.guard_zone_from_rad : report.guard_zone_to_rad) / kDegree;
-  return Number((degrees > 360 ? degrees - 360 : degrees < 0 ? degrees + 360 : degrees).toFixed(1));
+  return Number((degrees > 360.05 ? degrees - 360 : degrees < 0 ? degrees + 360 : degrees).toFixed(1));
 }
 
 export class Limits {
@@ -43,6 +43,7 @@ export class Limits {
       input.min = "0";
       input.max = String(kMost[name]);
       input.step = "any";
+      input.placeholder = words.unset;
       label.append(make("span", "", words.names[name]), input);
       this.fields.set(name, input);
       this.element.append(label);
@@ -71,7 +72,6 @@ export class Limits {
   private tell(): void {
     const { report } = this;
     if (report === null || this.element.closest("dialog")?.open !== true) return;
-    for (const [name, field] of this.fields) field.placeholder = String(limitOf(report, name));
     setText(this.inForce, words.inForce(report.mode === wire.Order.MODE_HARBOUR ? words.modes.harbour : words.modes.open_water, limitOf(report, "guard_zone_range_m"),
       limitOf(report, "guard_zone_from_deg"), limitOf(report, "guard_zone_to_deg"), limitOf(report, "cpa_limit_m")));
   }
