@@ -224,6 +224,28 @@ TEST(Situation, ADockComesIntoViewAsTheBoatPassesIt) {
   }
 }
 
+// Of a kayak that comes head-on, waves show the bow for a second and the paddler for the next. That which is seen jumps by 0.9 m, the kayak does not.
+TEST(Situation, AKayakOfWhichBowAndPaddlerAreSeenByTurnsMovesAllTheTime) {
+  constexpr double kSpeedMps = 1.0;
+  constexpr int kKnownAfter = 40;
+  const auto story = Follow(250, [](int scan) {
+    const Eigen::Vector2d middle_m(4.0, 34.0 - kSpeedMps * test::kScanS * scan);
+    const bool is_bow = scan / 10 % 2 == 1;
+    return Moment{is_bow ? Box({middle_m.x(), middle_m.y() - 0.4}, 0.8, 0.8, 1.3, 1) : Box({middle_m.x(), middle_m.y() + 0.5}, 0.8, 0.4, 1.4, 1),
+                  AsOne(false)};
+  });
+  const auto kayak = story.NameOf(1, 10);
+  EXPECT_EQ(story.Reported(), Labels{kayak});
+  int num_standing = 0;
+  for (std::size_t scan = kKnownAfter; scan < story.pictures.size(); ++scan) {
+    for (const auto& track : story.pictures[scan].tracks) {
+      if (track.id == kayak && track.velocity_mps.norm() < 0.5 * kSpeedMps) ++num_standing;
+    }
+  }
+  EXPECT_LE(num_standing, 10);
+  ExpectSpeed(story, kayak, {0.0, -kSpeedMps});
+}
+
 // 7 m long; the segmenter cuts off the stern.
 Walls BowAndStern(double way_m) { return Box({-18.0 + way_m, 12.0}, 4.0, 2.0, 1.0, 1) + Box({-21.5 + way_m, 12.0}, 3.0, 2.0, 1.6, 2); }
 
