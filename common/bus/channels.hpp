@@ -29,7 +29,6 @@ inline constexpr Channel kPose{"POSE", "pose_t", "navigator", 50, 1000, false, t
 inline constexpr Channel kObstacles{"OBSTACLES", "obstacles_t", "georeferencer", 80, 160, false, true};
 inline constexpr Channel kTracks{"TRACKS", "tracks_t", "tracker", 80, 160, false, true};
 inline constexpr Channel kAlerts{"ALERTS", "alerts_t", "tracker", 22, 44, false, true};  // one a scan, and two a second where nobody looks
-inline constexpr Channel kMap{"MAP", "map_t", "tracker", 20, 40, false, true};           // a part of it a scan
 // Both of page, plotter and others: whoever shows alerts. ALERTS say with which scan one was taken.
 inline constexpr Channel kAlertAck{"ALERT_ACK", "alert_ack_t", "several", 10, 40, true, true};
 inline constexpr Channel kOrders{"ORDERS", "order_t", "several", 2, 40, true, true};
@@ -39,7 +38,7 @@ inline constexpr Channel kRunInfo{"RUN_INFO", "run_info_t", "recorder", 1, 10, f
 inline constexpr Channel kSimTruth{"SIM_TRUTH", "sim_truth_t", "sim", 80, 160, false, false};
 
 inline constexpr std::array kChannels{kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw, kGnssFix, kAttitude, kPose,
-                                      kObstacles,    kTracks,    kAlerts,     kMap,       kAlertAck, kOrders, kHealth,  kRunInfo,  kSimTruth};
+                                      kObstacles,    kTracks,    kAlerts,     kAlertAck,  kOrders,   kHealth, kRunInfo, kSimTruth};
 
 /// Whether more than one process may send it: then its messages carry no numbers of one stream.
 constexpr bool HasSeveralPublishers(const Channel& channel) { return channel.publisher == "all" || channel.publisher == "several"; }

@@ -48,7 +48,7 @@ inline constexpr std::array kServices{
                "logs",
                "checks the config",
                "who watches, the last minutes where no recorder runs",
-               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kMap, &kAlertAck}},
+               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kAlertAck}},
     ServiceRow{"recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
 
 /// The input from which replay computes the service's other outputs, if it publishes one: it holds all that the service consumed.

@@ -73,7 +73,7 @@ std::optional<StreamPlace> PlaceOf(const Channel& channel, Bytes bytes) {
   const auto header = ReadHeader(bytes);
   if (!header || !IsOfType(channel, header->fingerprint)) return std::nullopt;
   const bool is_one_a_seq = channel.type != kLidarScan.type && channel.type != kSegments.type && channel.type != kObstacles.type &&
-                            channel.type != kTracks.type && channel.type != kAlerts.type && channel.type != kMap.type;
+                            channel.type != kTracks.type && channel.type != kAlerts.type;
   return StreamPlace{
       .seq = header->seq, .part_index = is_one_a_seq ? 0 : -1, .num_parts = 1, .utime_us = header->utime_us, .digest = DigestOf(bytes)};
 }

@@ -15,6 +15,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "common/config/text_salvage.hpp"
@@ -62,6 +63,29 @@ const Descriptor* FindSchema(const std::string& schema_file) {
 
 // More than these help nobody, and a text of nonsense has thousands.
 constexpr std::size_t kMaxFaults = 100;
+
+// Fields of before, which files of boats may still have.
+struct GoneField {
+  std::string_view message;
+  std::string_view field;
+  std::string_view reason;  // and what to do
+};
+constexpr std::array kGoneFields{
+    GoneField{"lookout.config.Tracker", "map",
+              "is gone: the tracker reads no map. Delete the line; lookout-export --table map makes the map out of the logs of many days"},
+    GoneField{"lookout.config.Tracker", "warning_tcpa_s",
+              "is gone: a warning means that no more time is left than this boat needs. Delete the line, and set reaction_s, deceleration_mps2 and "
+              "turn_rate_degps"},
+    GoneField{"lookout.config.Georeferencer", "guard_zone", "is gone from here: move it to tracker.txtpb"}};
+
+// In place of Protobuf's "no field named".
+void SayWhatIsGone(const Descriptor& schema, std::vector<TextFault>& faults) {
+  for (auto& fault : faults) {
+    const auto gone =
+        std::ranges::find_if(kGoneFields, [&](const GoneField& one) { return one.message == schema.full_name() && one.field == fault.field; });
+    if (gone != kGoneFields.end() && fault.reason.find("has no field named") != std::string::npos) fault.reason = gone->reason;
+  }
+}
 
 class FaultCollector final : public google::protobuf::io::ErrorCollector {
  public:
@@ -211,6 +235,7 @@ void ParseText(const std::string& text, const std::string& name, Message& messag
       faults.clear();
       positions = std::make_unique<TextFormat::ParseInfoTree>();
       is_parsed = parse(salvaged.text, *positions);
+      SayWhatIsGone(*message.GetDescriptor(), salvaged.faults);
       faults.insert(faults.end(), salvaged.faults.begin(), salvaged.faults.end());
     }
   }

@@ -197,36 +197,6 @@ bool AreCodesKnown(const obstacle_t& obstacle) {
          obstacle.grounds <= kAllGrounds;
 }
 
-constexpr double kMaxMapThingM = 1000.0;  // any length of a thing of the map, and its deviation
-
-// Rising, of 1900 to 2199, at most a hundred.
-bool AreDays(const std::vector<std::int32_t>& days) {
-  return days.size() <= 100 && std::ranges::adjacent_find(days, std::greater_equal()) == days.end() &&
-         (days.empty() || (days.front() >= -25'567 && days.back() <= 84'005));
-}
-
-bool IsGood(const map_thing_t& thing) {
-  constexpr auto kMost = static_cast<float>(kMaxMapThingM);
-  constexpr std::int64_t kMostMapThingId = 1'000'000'000'000;  // those of a year, and room to count on
-  return thing.id > 0 && thing.id <= kMostMapThingId && thing.kind >= track_t::KIND_OBSTACLE && thing.kind <= track_t::KIND_UNKNOWN &&
-         thing.state >= map_thing_t::STATE_UNSEEN && thing.state <= map_thing_t::STATE_GONE && IsWithin(thing.latitude_deg, 90.0) &&
-         IsWithin(thing.longitude_deg, 180.0) && IsWithin(thing.deviation_m, 0.0F, kMost) && IsWithin(thing.length_m, 0.0F, kMost) &&
-         IsWithin(thing.width_m, 0.0F, kMost) && IsWithin(thing.length_bearing_rad, 0.0F, static_cast<float>(kPi)) &&
-         IsWithin(thing.top_above_water_m, -kMost, kMost) && UtimeFromWire(thing.first_utime_us) && UtimeFromWire(thing.seen_utime_us) &&
-         UtimeFromWire(thing.gone_utime_us) && AreDays(thing.day) && thing.day.size() == thing.num_day_scans.size() &&
-         std::ranges::all_of(thing.num_day_scans, [](std::int32_t num) { return num >= 0; }) && !thing.outline_east_m.empty() &&
-         thing.outline_east_m.size() <= 64 && thing.outline_east_m.size() == thing.outline_north_m.size() &&
-         AreWithin(thing.outline_east_m, kMaxMapThingM) && AreWithin(thing.outline_north_m, kMaxMapThingM);
-}
-
-bool IsGood(const map_land_t& land) {
-  constexpr std::int32_t kMostTile = 3'000'000;  // of 16 m, or once round the earth
-  return std::abs(std::int64_t{land.tile_east}) <= kMostTile && std::abs(std::int64_t{land.tile_north}) <= kMostTile &&
-         UtimeFromWire(land.seen_utime_us) && AreDays(land.day) && land.cell.size() <= 1024 &&
-         std::ranges::adjacent_find(land.cell, std::greater_equal()) == land.cell.end() &&
-         (land.cell.empty() || (land.cell.front() >= 0 && land.cell.back() < 1024));
-}
-
 // Of pieces, numbered from 1 by 16 bits.
 bool HasSlice(const tracks_t& message) {
   if (!std::cmp_equal(message.num_pieces, message.track_of_piece.size())) return false;
@@ -249,14 +219,6 @@ bool IsWellFormed(const obstacles_t& message) {
 }
 
 bool IsWellFormed(const tracks_t& message) { return HasPlace(message) && HasSlice(message); }
-
-bool IsWellFormed(const map_t& message) {
-  return HasPlace(message) && UtimeFromWire(message.end_utime_us) && UtimeFromWire(message.begin_utime_us) &&
-         UtimeFromWire(message.land_begin_utime_us) && message.source >= map_t::SOURCE_GIVEN && message.source <= map_t::SOURCE_KEPT &&
-         !(std::abs(message.datum_latitude_deg) > 90.0) && !(std::abs(message.datum_longitude_deg) > 180.0) &&
-         IsWithin(message.water_up_m, kMaxPlaceM) && std::ranges::all_of(message.things, [](const map_thing_t& thing) { return IsGood(thing); }) &&
-         std::ranges::all_of(message.land, [](const map_land_t& land) { return IsGood(land); });
-}
 
 std::optional<Fault> FaultOf(const lidar_scan_t& message, int max_message_bytes) {
   const auto time = UtimeFromWire(message.utime_us);

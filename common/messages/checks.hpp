@@ -1,4 +1,4 @@
-// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS, ALERTS, MAP, and of ALERT_ACK and ORDERS. A service computes from what
+// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS, ALERTS, and of ALERT_ACK and ORDERS. A service computes from what
 // FaultOf accepts; a tool, which shows also what a service refuses, asks IsWellFormed.
 #pragma once
 
@@ -10,7 +10,6 @@
 
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
-#include "lookout/map_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/order_t.hpp"
 #include "lookout/segments_t.hpp"
@@ -25,7 +24,6 @@ bool IsWellFormed(const segments_t& message);
 bool IsWellFormed(const obstacles_t& message);
 bool IsWellFormed(const tracks_t& message);
 /// Also whether its numbers are finite and in their bounds: what is read of a log's map is used as a file's is.
-bool IsWellFormed(const map_t& message);
 
 /// What is wrong with a message: the name of the counter of its refusals.
 using Fault = std::string_view;

@@ -10,7 +10,6 @@
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_clock_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
-#include "lookout/map_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/order_t.hpp"
 #include "lookout/pose_t.hpp"
@@ -63,7 +62,6 @@ Service::Service(bus::Bus& bus, ServiceParts parts) : bus_(bus), parts_(std::mov
   Forward<obstacles_t>(bus::kObstacles);
   Forward<tracks_t>(bus::kTracks);
   Forward<alerts_t>(bus::kAlerts);
-  Forward<map_t>(bus::kMap);
   Forward<alert_ack_t>(bus::kAlertAck);
   Forward<health_t>(bus::kHealth);
   Forward<run_info_t>(bus::kRunInfo);

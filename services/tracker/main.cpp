@@ -1,4 +1,4 @@
-// The tracker process: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE, ALERT_ACK and ORDERS in, TRACKS, ALERTS and MAP out.
+// The tracker process: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE, ALERT_ACK and ORDERS in, TRACKS and ALERTS out.
 #include <chrono>
 
 #include "common/runtime/service_main.hpp"
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   return lookout::runtime::ServiceMain<lookout::tracker::Params>(
       argc, argv,
       {.name = "tracker",
-       .purpose = "OBSTACLES, SEGMENTS, LIDAR_SCAN and POSE in, TRACKS, ALERTS and MAP out",
+       .purpose = "OBSTACLES, SEGMENTS, LIDAR_SCAN and POSE in, TRACKS and ALERTS out",
        .load = [](const auto& folder) { return lookout::tracker::LoadParams(folder); },
        .run = Run,
        .remarks = lookout::tracker::ZoneRemarksAsComments});

@@ -13,7 +13,6 @@
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/tracker.pb.h"
 #include "config/schema/vlp16.pb.h"
-#include "services/tracker/map_file.hpp"
 
 namespace lookout::tracker {
 
@@ -91,7 +90,7 @@ LookOutParams ToLookOut(const config::Tracker& message, const GuardZoneParams& z
 
 }  // namespace
 
-Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file) {
+Params LoadParams(const std::filesystem::path& config_folder) {
   const auto file = config_folder / "tracker.txtpb";
   config::FaultList faults;
   const auto boat = faults.Take([&] { return config::LoadBoat(config_folder); });
@@ -112,18 +111,9 @@ Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file) 
   if (message && message->has_guard_zone() && message->guard_zone().to_bearing_deg() == message->guard_zone().from_bearing_deg()) {
     faults.Add(config::FaultLine(file, "guard_zone.to_bearing_deg", "must differ from from_bearing_deg"));
   }
-  std::shared_ptr<const OwnMap> map;
-  if (message && message->has_map() && map_file == MapFile::kRead) {
-    try {
-      map = std::make_shared<const OwnMap>(ReadMapFile(config_folder / message->map()));
-    } catch (const MapFileError& error) {
-      faults.Add(config::FaultLine(file, "map", error.what()));
-    }
-  }
   faults.ThrowIfAny();
 
   Params params;
-  params.map = std::move(map);
   auto& zone = params.look_out.limits.guard_zone;
   if (message->has_guard_zone()) {
     zone = ToGuardZone(message->guard_zone());

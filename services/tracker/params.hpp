@@ -3,10 +3,8 @@
 
 #include <chrono>
 #include <filesystem>
-#include <memory>
 
 #include "services/tracker/core/look_out.hpp"
-#include "services/tracker/core/own_map.hpp"
 #include "services/tracker/core/tracker.hpp"
 #include "services/tracker/core/zone_sight.hpp"
 
@@ -17,14 +15,10 @@ struct Params {
   LookOutParams look_out = {};
   ZoneSightParams zone_sight = {};
   std::chrono::microseconds wait_timeout{500'000};  // live only
-  std::shared_ptr<const OwnMap> map = {};           // what the file of `map` holds; nullptr: none is named, or it was not to be read
 };
 
-/// Whether the file of `map` is read. A replay takes what the log says was given.
-enum class MapFile { kRead, kLeave };
-
 /// @param config_folder  the boat's folder, holding boat.txtpb, segmenter.txtpb and tracker.txtpb
-/// @throws config::ConfigError, also of a map that cannot be used
-Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file = MapFile::kRead);
+/// @throws config::ConfigError
+Params LoadParams(const std::filesystem::path& config_folder);
 
 }  // namespace lookout::tracker

@@ -192,23 +192,14 @@ void Service::Use(const GatheredScan& scan) {
   TellOfZone(message);
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
-  if (const auto map = memory_->map.Next(*label_, is_placed_, memory_->tracker)) bus::Publish(bus_, bus::kMap, *map);
   Leave(message, picture);
 
   memory_->picture = &picture;
   num_alerts_ = std::ranges::count_if(alerts, [](const Alert& alert) { return alert.state != AlertState::kCleared; });
 }
 
-// With the map that its config names; a script says what the live process was given.
 void Service::Begin(const ScanKey& begin) {
-  GivenMap given;
-  if (given_.script) {
-    const auto found = given_.script->given.find(begin);
-    if (found != given_.script->given.end()) given = found->second;
-  } else if (params_.map) {
-    given.map = *params_.map;
-  }
-  memory_ = std::make_unique<Memory>(params_, std::move(given));
+  memory_ = std::make_unique<Memory>(params_);
   memory_->begin = begin;
 }
 

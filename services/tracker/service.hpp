@@ -1,4 +1,4 @@
-// The tracker process without its clock: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE, ALERT_ACK and ORDERS in, TRACKS, ALERTS and MAP out.
+// The tracker process without its clock: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE, ALERT_ACK and ORDERS in, TRACKS and ALERTS out.
 #pragma once
 
 #include <array>
@@ -23,7 +23,6 @@
 #include "services/tracker/core/script.hpp"
 #include "services/tracker/core/zone_sight.hpp"
 #include "services/tracker/handover.hpp"
-#include "services/tracker/map_telling.hpp"
 #include "services/tracker/params.hpp"
 #include "services/tracker/watch.hpp"
 #include "services/tracker/wire.hpp"
@@ -60,14 +59,12 @@ class Service {
  private:
   // Tracks and alerts, from the begin of a process.
   struct Memory {
-    Memory(const Params& params, GivenMap given)
-        : tracker(params.tracker), look_out(params.look_out), zone_sight(params.zone_sight), map(std::move(given)) {}
+    explicit Memory(const Params& params) : tracker(params.tracker), look_out(params.look_out), zone_sight(params.zone_sight) {}
     Tracker tracker;
     LookOut look_out;
     ZoneSight zone_sight;
     std::string zone_text;  // of the last part of the guard zone that nobody looked into
     KeptAcknowledgements kept;
-    MapTelling map;
     const Picture* picture = nullptr;  // of the last scan: the tracker's own
     ScanKey begin;
   };

@@ -181,7 +181,6 @@ track_t ToMessage(const Track& track, const LocalFrame& map, double own_up_m) {
   message.range_m = ToFloat(track.range_m);
   message.bearing_rad = ToBearing(track.bearing_rad);
   CopyApproach(track.approach, message);
-  message.known_days = track.known_days;
   message.encounter = static_cast<std::int32_t>(track.encounter);
   return message;
 }

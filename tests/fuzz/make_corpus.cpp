@@ -417,22 +417,6 @@ void WritePointFiles(const Folder& folder) {
   folder.Write("kitti", points + labels);
 }
 
-void WriteMaps(const Folder& folder) {
-  const std::string head = R"({"type":"FeatureCollection","lookout_map":1,"features":[)";
-  const std::string thing =
-      R"({"type":"Feature","geometry":{"type":"Polygon","coordinates":[[[-72.15,43.63],[-72.1499,43.63],[-72.15,43.6301],[-72.15,43.63]]]},)"
-      R"("properties":{"type":"thing","kind":"buoy","latitude_deg":43.63,"longitude_deg":-72.15,"deviation_m":0.3,"length_m":2,"width_m":1,)"
-      R"("length_bearing_deg":45,"top_above_water_m":1.5,"first_seen":"2026-06-16T14:10:00Z","last_seen":"2026-06-18T14:12:29Z",)"
-      R"("gone_since":"2026-06-19T08:00:00Z","scans_by_day":{"2026-06-16":7,"2026-06-18":9}}})";
-  const std::string land =
-      R"({"type":"Feature","geometry":{"type":"MultiPoint","coordinates":[[-72.15,43.63],[-72.1501,43.63]]},"properties":{"type":"land",)"
-      R"("last_seen":"2026-06-18T14:12:29Z","seen_on":["2026-06-16","2026-06-18"]}})";
-  folder.Write("empty", head + "]}");
-  folder.Write("thing", head + thing + "]}");
-  folder.Write("land", head + land + "]}");
-  folder.Write("both", head + thing + "," + land + "]}");
-}
-
 void WriteConfigs(const Folder& folder, const std::filesystem::path& boats) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(boats)) {
     if (entry.path().extension() != ".txtpb") continue;
@@ -490,7 +474,6 @@ int main(int argc, char** argv) try {
   WritePatches(Folder(root / "fuzz_georeferencer"));
   WritePatches(Folder(root / "fuzz_tracker"));
   WritePointFiles(Folder(root / "fuzz_point_file"));
-  WriteMaps(Folder(root / "fuzz_map_file"));
   WritePageRequests(Folder(root / "fuzz_page_request"));
   WriteConfigs(Folder(root / "fuzz_config"), argv[2]);
   return 0;

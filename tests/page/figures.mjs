@@ -8,7 +8,7 @@ import { bin, log, socketHeaders, source, startBrowser, startFilm, startProgram,
 
 const kSeconds = Number(process.argv[2] ?? 60);
 const kVisits = 5, kClients = 4, kClients_s = 20, kTicksPerSecond = 100, kPort = 7668;
-const kChannels = ["LIDAR_SCAN", "SEGMENTS", "OBSTACLES", "TRACKS", "ALERTS", "POSE", "HEALTH", "LIDAR_CLOCK", "GNSS_FIX", "MAP"];
+const kChannels = ["LIDAR_SCAN", "SEGMENTS", "OBSTACLES", "TRACKS", "ALERTS", "POSE", "HEALTH", "LIDAR_CLOCK", "GNSS_FIX"];
 
 const at = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))] ?? NaN;
 const ticksOf = (pid) => readFileSync(`/proc/${pid}/stat`, "utf8").replace(/^.*\) /, "").split(" ").slice(11, 13).reduce((sum, ticks) => sum + Number(ticks), 0);

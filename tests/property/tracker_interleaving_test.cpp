@@ -96,7 +96,6 @@ Inputs MakeInputs(std::mt19937& random) {
 struct Outputs {
   std::vector<Payload> tracks;
   std::vector<Payload> alerts;
-  std::vector<Payload> maps;
   bool operator==(const Outputs&) const = default;
 };
 
@@ -107,7 +106,6 @@ Outputs OutputsOf(const Inputs& inputs, const std::array<double, 4>& shares, std
   Outputs outputs;
   bus.SubscribeRaw(bus::kTracks, [&](std::string_view, Bytes bytes) { outputs.tracks.emplace_back(bytes.begin(), bytes.end()); });
   bus.SubscribeRaw(bus::kAlerts, [&](std::string_view, Bytes bytes) { outputs.alerts.emplace_back(bytes.begin(), bytes.end()); });
-  bus.SubscribeRaw(bus::kMap, [&](std::string_view, Bytes bytes) { outputs.maps.emplace_back(bytes.begin(), bytes.end()); });
   const std::array streams{&inputs.beams, &inputs.labels, &inputs.poses, &inputs.obstacles};
   std::array<std::size_t, 4> next{};
   while (true) {
@@ -138,7 +136,6 @@ TEST(TrackerInterleaving, GivesTheSameBytesHoweverTheChannelsInterleave) {
     const auto expected = OutputsOf(inputs, {1.0, 1.0, 1.0, 0.0}, random);  // OBSTACLES last
     ASSERT_GE(expected.tracks.size(), 40U);
     EXPECT_EQ(expected.alerts.size(), expected.tracks.size());
-    EXPECT_GE(expected.maps.size(), 1U);
     for (const auto& shares : std::vector<std::array<double, 4>>{
              {0.0, 0.0, 0.0, 1.0}, {0.0, 1.0, 1.0, 1.0}, {1.0, 0.0, 1.0, 1.0}, {1.0, 1.0, 0.0, 1.0}, {1.0, 1.0, 5.0, 1.0}, {0.1, 0.3, 2.0, 1.0}}) {
       EXPECT_TRUE(OutputsOf(inputs, shares, random) == expected) << ::testing::PrintToString(shares);

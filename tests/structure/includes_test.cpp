@@ -113,9 +113,6 @@ const std::vector<Rule>& Rules() {
       {"services/page/(main|film_mode)\\..pp",
        {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "OWN/film", "spdlog", "fmt",
         "cli"}},
-      // MAP, and the file that it may begin with.
-      {"services/tracker/map_(wire|telling)\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
-      {"services/tracker/map_file\\..pp", {"common/core", "OWN", "OWN/core", "fmt", "nlohmann-json"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
       {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types", "fmt"}},

@@ -47,7 +47,7 @@ constexpr std::int64_t kReturnsKeptUs = 2'000'000;
 constexpr std::int64_t kCountWithinUs = 60'000;
 
 AlertRules RulesOf(const fs::path& config_folder) {
-  const auto params = tracker::LoadParams(config_folder, tracker::MapFile::kLeave);
+  const auto params = tracker::LoadParams(config_folder);
   AlertRules rules;
   rules.cpa_limit_m = params.tracker.encounter.limit_m;
   rules.look_ahead_s = params.tracker.encounter.look_ahead_s;

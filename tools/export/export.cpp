@@ -122,6 +122,20 @@ std::unique_ptr<Sink> MakeSink(const Request& request) {
   return MakeCsvSink(request.table, request.near);
 }
 
+// By their first events: a map is made in the order of time, and who gives its logs need not know it.
+std::vector<std::filesystem::path> InOrderOfTime(std::vector<std::filesystem::path> inputs) {
+  std::vector<std::pair<Utime, std::filesystem::path>> by_time;
+  by_time.reserve(inputs.size());
+  for (auto& input : inputs) {
+    bus::LogReader reader(input, io::ThrowIfStopAsked);
+    const auto event = reader.NextView([](std::string_view) { return false; });
+    by_time.emplace_back(event ? event->time : Utime(), std::move(input));
+  }
+  std::ranges::sort(by_time);
+  std::ranges::transform(by_time, inputs.begin(), [](auto& one) { return std::move(one.second); });
+  return inputs;
+}
+
 // How much later, by more than can be, events were logged than what they tell was measured: of a log that was recorded while an old one was played.
 // By the first message of the table.
 std::chrono::microseconds AgeOfMessages(const std::vector<std::filesystem::path>& inputs, const std::string& channel) {
@@ -290,7 +304,10 @@ int Run(const Request& request, std::ostream& errors) {
     return kExitUsage;
   }
   try {
-    return Export(request, errors);
+    if (request.table != "map") return Export(request, errors);
+    Request ordered = request;
+    ordered.inputs = InOrderOfTime(request.inputs);
+    return Export(ordered, errors);
   } catch (const io::BrokenPipe&) {  // no fault: `| head` ends quietly
     return kExitFine;
   } catch (const UsageError& error) {

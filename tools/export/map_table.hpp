@@ -1,4 +1,4 @@
-// The table `map`: the boat's own map out of logs of many days, as GeoJSON that the tracker reads again, or as CSV.
+// The table `map`: the boat's own map out of logs of many days, as GeoJSON or CSV.
 #pragma once
 
 #include <memory>

@@ -125,7 +125,7 @@ void Append(const tracks_t& message, const Near* near, std::string& text) {
               Share(track.existence_probability), Share(track.moving_probability), Metres(track.length_m), Metres(track.width_m),
               Degrees(track.length_bearing_rad), Metres(track.top_above_water_m), Share(track.seen_share), track.num_seen, track.num_looks,
               Fixed{track.mean_returns, 1}, Metres(track.range_m), Direction{track.bearing_rad}, Metres(track.distance_m),
-              Share(track.cpa_probability), words::WordOf(words::kEncounter, track.encounter), Degrees(track.bearing_drift_radps), track.known_days);
+              Share(track.cpa_probability), words::WordOf(words::kEncounter, track.encounter), Degrees(track.bearing_drift_radps));
   }
 }
 
@@ -242,7 +242,7 @@ const std::array kTables{
           "east_m,"
           "north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,velocity_east_mps,velocity_north_mps,existence_probability,moving_probability,length_m,width_m,"
           "length_bearing_deg,top_above_water_m,seen_share,num_seen,num_looks,mean_returns,range_m,bearing_deg,distance_m,cpa_probability,encounter,"
-          "bearing_drift_degps,known_days",
+          "bearing_drift_degps",
           bus::kTracks, AppendPlaced<tracks_t>},
     Table{"alerts",
           "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text,"
@@ -271,7 +271,7 @@ const std::array kTables{
           "handling_p99_us,latency_p50_us,latency_p99_us",
           bus::kHealth, AppendMessage<health_t, AppendTraffic>},
     Table{"counters", "utime_us,process,name,count", bus::kHealth, AppendMessage<health_t, AppendCounters>},
-    Table{"map", MapHeader(), bus::kMap, nullptr},
+    Table{"map", MapHeader(), bus::kTracks, nullptr},
     Table{"merges", "", bus::kLidarScan, nullptr}};  // its header has the names of all features: MergesHeader
 
 const Table* FindTable(std::string_view name) {

@@ -23,7 +23,6 @@
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
-#include "lookout/map_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/order_t.hpp"
@@ -56,7 +55,6 @@ std::string_view FaultOf(const obstacles_t& message) { return messages::FaultOf(
 std::string_view FaultOf(const alert_ack_t& message) { return messages::FaultOf(message).value_or(""); }
 std::string_view FaultOf(const order_t& message) { return messages::FaultOf(message).value_or(""); }
 std::string_view FaultOf(const tracks_t& message) { return messages::IsWellFormed(message) ? "" : kContradicts; }
-std::string_view FaultOf(const map_t& message) { return messages::IsWellFormed(message) ? "" : kContradicts; }
 
 std::string_view FaultOf(const pose_t& message) {
   const auto pose = messages::ToPose(message);
@@ -121,7 +119,6 @@ constexpr std::array kCheckers{Checker{bus::kLidarPackets.name, &Check<lidar_pac
                                Checker{bus::kObstacles.name, &Check<obstacles_t>},
                                Checker{bus::kTracks.name, &Check<tracks_t>},
                                Checker{bus::kAlerts.name, &Check<alerts_t>},
-                               Checker{bus::kMap.name, &Check<map_t>},
                                Checker{bus::kAlertAck.name, &Check<alert_ack_t>},
                                Checker{bus::kOrders.name, &Check<order_t>},
                                Checker{bus::kHealth.name, &Check<health_t>},

@@ -10,8 +10,6 @@
 #include "common/bus/log_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "lookout/alerts_t.hpp"
-#include "lookout/map_t.hpp"
-#include "services/tracker/map_wire.hpp"
 #include "services/tracker/wire.hpp"
 
 namespace lookout::replay {
@@ -105,58 +103,24 @@ tracker::Script ToScript(const std::vector<Told>& log) {
   return script;
 }
 
-// The map that each process was given. Of two that say so of one beginning the first counts, as of parts that come twice.
-class GivenMaps {
- public:
-  void Add(const map_t& message) {
-    if (message.source != map_t::SOURCE_GIVEN) return;
-    auto part = tracker::ToOwnMap(message);
-    if (!part) return;
-    const tracker::ScanKey begin{*UtimeFromWire(message.begin_utime_us), message.begin_seq};
-    auto& [given, num_parts] = given_[begin];
-    if (num_parts == 0) given.num_parts = message.num_parts;
-    if (message.part_index != num_parts || message.num_parts != given.num_parts) return;
-    if (given.map.things.size() + part->things.size() > tracker::kMostMapThings) return;
-    if (given.map.land.size() + part->land.size() > tracker::kMostMapTiles) return;
-    ++num_parts;
-    std::ranges::move(part->things, std::back_inserter(given.map.things));
-    std::ranges::move(part->land, std::back_inserter(given.map.land));
-  }
-
-  std::map<tracker::ScanKey, tracker::GivenMap> Take() {
-    std::map<tracker::ScanKey, tracker::GivenMap> maps;
-    for (auto& [begin, one] : given_) maps.emplace(begin, std::move(one.first));
-    return maps;
-  }
-
- private:
-  std::map<tracker::ScanKey, std::pair<tracker::GivenMap, std::int32_t>> given_;  // with the number of parts so far
-};
-
 }  // namespace
 
 std::optional<tracker::Script> ReadScript(const std::vector<std::filesystem::path>& logs, const std::function<void(std::int64_t)>& show) {
   std::vector<Told> told;
-  GivenMaps maps;
   std::int64_t done_bytes = 0;
   for (const auto& log : logs) {
     bus::LogReader reader(log, io::ThrowIfStopAsked);
-    const auto is_read = [](std::string_view channel) { return channel == bus::kAlerts.name || channel == bus::kMap.name; };
+    const auto is_read = [](std::string_view channel) { return channel == bus::kAlerts.name; };
     while (const auto event = reader.NextView(is_read)) {
       io::ThrowIfStopAsked();
       if (show) show(done_bytes + reader.position_bytes());
-      if (event->channel == bus::kMap.name) {
-        if (const auto message = bus::Decode<map_t>(event->bytes)) maps.Add(*message);
-      }
       if (event->channel != bus::kAlerts.name) continue;
       if (const auto message = bus::Decode<alerts_t>(event->bytes)) Add(*message, told);
     }
     done_bytes += reader.size_bytes();
   }
   if (told.empty()) return std::nullopt;
-  auto script = ToScript(WithoutIntruders(std::move(told)));
-  script.given = maps.Take();
-  return script;
+  return ToScript(WithoutIntruders(std::move(told)));
 }
 
 }  // namespace lookout::replay

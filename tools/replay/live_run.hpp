@@ -11,7 +11,7 @@
 
 namespace lookout::replay {
 
-/// Reads ALERTS and MAP, and of all else no more than the head. ALERTS of a second tracker, between two of the process that goes on, are left out.
+/// Reads ALERTS, and of all else no more than the head. ALERTS of a second tracker, between two of the process that goes on, are left out.
 ///
 /// @param show  is told how many bytes were read, of all logs; may be empty
 /// @return at which scans its processes began and ended, with which an acknowledgement was taken, and which map each was given; nullopt where the

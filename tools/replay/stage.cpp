@@ -111,7 +111,7 @@ class GeoreferencerStage final : public Stage {
 class TrackerStage final : public Stage {
  public:
   TrackerStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& input)
-      : service_(bus, tracker::LoadParams(config_folder, input.plan.script ? tracker::MapFile::kLeave : tracker::MapFile::kRead),
+      : service_(bus, tracker::LoadParams(config_folder),
                  {.sources = {.has_beams = input.plan.Gives(bus::kLidarScan), .has_labels = input.plan.Gives(bus::kSegments)},
                   .script = input.plan.script}) {}
 
@@ -140,7 +140,7 @@ const std::vector<StageFactory>& StageFactories() {
       {"segmenter", [](const fs::path& folder) { segmenter::LoadParams(folder); }, Make<SegmenterStage>},
       {"navigator", [](const fs::path& folder) { navigator::LoadParams(folder); }, Make<NavigatorStage>},
       {"georeferencer", [](const fs::path& folder) { georeferencer::LoadParams(folder); }, Make<GeoreferencerStage>},
-      {"tracker", [](const fs::path& folder) { tracker::LoadParams(folder, tracker::MapFile::kLeave); }, Make<TrackerStage>}};
+      {"tracker", [](const fs::path& folder) { tracker::LoadParams(folder); }, Make<TrackerStage>}};
   return kFactories;
 }
 

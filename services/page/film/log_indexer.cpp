@@ -24,7 +24,6 @@ constexpr std::size_t kMarkOffset = 24;       // of LIDAR_PACKETS marks, of NAV_
 constexpr std::size_t kEndUtimeOffset = 32;   // of the messages of a scan
 constexpr std::size_t kScanPartOffset = 40;   // of LIDAR_SCAN; part_index and num_parts
 constexpr std::size_t kPartOffset = 44;       // of SEGMENTS, OBSTACLES and TRACKS: behind scan_flags
-constexpr std::size_t kMapPartOffset = 48;    // of MAP: behind scan_seq
 constexpr std::size_t kNumTracksOffset = 96;  // of TRACKS: num_scan_tracks
 constexpr std::size_t kHeadBytes = 104;
 
@@ -69,10 +68,10 @@ const std::vector<std::uint64_t>& FingerprintsOfChannels() {
 std::size_t PartOffset(std::string_view name) {
   if (name == bus::kLidarScan.name) return kScanPartOffset;
   if (name == bus::kSegments.name || name == bus::kObstacles.name || name == bus::kTracks.name) return kPartOffset;
-  return name == bus::kMap.name ? kMapPartOffset : 0;
+  return 0;
 }
 
-bool HasEnd(std::string_view name) { return name == bus::kAlerts.name || (PartOffset(name) != 0 && name != bus::kMap.name); }
+bool HasEnd(std::string_view name) { return name == bus::kAlerts.name || PartOffset(name) != 0; }
 
 std::string Seconds(microseconds duration) { return fmt::format("{:.1f} s", ToSeconds(duration)); }
 
@@ -171,8 +170,7 @@ void LogIndexer::OnEvent(const bus::LogEventView& event, Utime time, LogPart& pa
   }
   Parts parts;
   if (part_offset > 0) parts = {ReadI32(event.bytes, part_offset), ReadI32(event.bytes, part_offset + 4)};
-  const auto max_parts = event.channel == bus::kMap.name ? std::int64_t{UINT16_MAX} : std::int64_t{messages::kMaxObstaclesParts};
-  if (parts.index < 0 || parts.index >= parts.count || parts.count > max_parts) return Refuse(*channel, time, part);
+  if (parts.index < 0 || parts.index >= parts.count || parts.count > messages::kMaxObstaclesParts) return Refuse(*channel, time, part);
 
   LogEntry entry{.time = time,
                  .utime_us = header->utime_us,

@@ -14,7 +14,7 @@ using std::chrono::seconds;
 constexpr seconds kScanSpread(5);
 constexpr std::size_t kOpenScans = 16;
 constexpr seconds kRecent(5);           // HEALTH and what else has no scan
-constexpr std::size_t kMaxBack = 2000;  // messages of ALERTS and MAP that are looked through
+constexpr std::size_t kMaxBack = 2000;  // messages of ALERTS that are looked through
 
 bool Is(ChannelIndex channel, const bus::Channel& of) { return bus::kChannels[channel].name == of.name; }
 
@@ -82,7 +82,7 @@ void Timeline::NoteScan(const Place& place) {
 void Timeline::DropBefore(Utime time) {
   if (!begin_ || time <= *begin_) return;
   for (auto& places : channels_) {
-    // Of RUN_INFO and MAP the last before is what a moment needs.
+    // Of RUN_INFO the last before is what a moment needs.
     const bool keeps_last = &places == &channels_[static_cast<std::size_t>(bus::FindChannel("RUN_INFO") - bus::kChannels.data())];
     while (!places.empty() && places.front().time < time && !(keeps_last && places.size() == 1)) places.pop_front();
   }
@@ -172,14 +172,6 @@ std::vector<Place> Timeline::OfChannel(ChannelIndex channel, const Moment& momen
   }
   if (places.empty()) return {};
   if (Is(channel, bus::kRunInfo)) return {after == places.begin() ? *after : *std::prev(after)};
-  if (Is(channel, bus::kMap)) {
-    const auto& of = after == places.begin() ? *after : *std::prev(after);
-    std::vector<Place> found;
-    auto first = after == places.begin() ? after : std::prev(after);
-    for (std::size_t i = 0; i < kMaxBack && first != places.begin() && std::prev(first)->utime_us == of.utime_us; ++i) --first;
-    for (; first != places.end() && first->utime_us == of.utime_us && found.size() < 2 * kMaxBack; ++first) found.push_back(*first);
-    return found;
-  }
   if (after != places.begin() && moment.time - std::prev(after)->time <= kRecent) return {*std::prev(after)};
   return {};
 }

@@ -30,7 +30,6 @@ void LandMemory::Change(Tile& tile, std::size_t index, int by) {
   const bool was_land = evidence >= kIsLand;
   evidence = static_cast<std::int8_t>(std::clamp(evidence + by, -kMost, kMost));
   tile.num_land += static_cast<int>(evidence >= kIsLand) - static_cast<int>(was_land);
-  if (was_land != (evidence >= kIsLand)) tile.is_changed = true;
   if (evidence <= 0) tile.top_dm[index] = 0;
 }
 
@@ -55,12 +54,7 @@ void LandMemory::Add(std::span<const Eigen::Vector2d> places_m, std::span<const 
     }
     const std::size_t index = IndexOf(cell);
     Change(tile->second, index, change);
-    if (!is_land) continue;
-    tile->second.top_dm[index] = std::max(tile->second.top_dm[index], top_dm);
-    if (tile->second.evidence[index] < kIsLand) continue;
-    tile->second.is_changed = true;
-    tile->second.seen = now_;
-    if (tile->second.days.empty() || tile->second.days.back() != DayOf(now_)) AddDay(DayOf(now_), tile->second.days);
+    if (is_land) tile->second.top_dm[index] = std::max(tile->second.top_dm[index], top_dm);
   }
 }
 
@@ -140,19 +134,6 @@ std::vector<Eigen::Vector2d> LandMemory::Waterline(const Eigen::Vector2d& near_m
   std::ranges::stable_sort(places_m, {}, [&near_m](const Eigen::Vector2d& place_m) { return (place_m - near_m).squaredNorm(); });
   if (places_m.size() > most) places_m.resize(most);
   return places_m;
-}
-
-std::vector<MapLand> LandMemory::TakeChanged() {
-  std::vector<MapLand> changed;
-  for (auto& [number, tile] : tiles_) {
-    if (!std::exchange(tile.is_changed, false) || tile.days.empty()) continue;
-    MapLand land{.tile = {number.first, number.second}, .seen = tile.seen, .days = tile.days, .cells = {}};
-    for (std::size_t i = 0; i < tile.evidence.size(); ++i) {
-      if (tile.evidence[i] >= kIsLand) land.cells.push_back(static_cast<std::int16_t>(i));
-    }
-    changed.push_back(std::move(land));
-  }
-  return changed;
 }
 
 void LandMemory::Forget(const Eigen::Vector2d& own_m) {

@@ -6,12 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "services/tracker/core/own_map.hpp"
 #include "services/tracker/core/sight.hpp"
 
 namespace lookout::tracker {
@@ -29,12 +27,6 @@ class LandMemory {
 
   enum class Said { kLand, kThing, kMaybeThing };
 
-  /// Time of what is added from now on. Without it nothing has a time.
-  void AdvanceTo(Utime now) {
-    now_ = now;
-    begin_ = begin_.value_or(now);
-  }
-
   /// One segment of one scan: each cell counts once, however many returns lie in it.
   /// @param tops_m  [places] heights over the water; empty where they are not known: then the cells do not become free by being looked through
   void Add(std::span<const Eigen::Vector2d> places_m, std::span<const double> tops_m, Said said);
@@ -50,25 +42,17 @@ class LandMemory {
   /// Cells of land with free cells before them, seen from a place, at most `range_m` from it, nearest first, at most `most`.
   std::vector<Eigen::Vector2d> Waterline(const Eigen::Vector2d& near_m, double range_m, std::size_t most) const;
 
-  /// Tiles in which something was added, or the land has changed, since the last call; also those without land any more. By tile; numbers of tiles
-  /// and cells count from the map's origin.
-  std::vector<MapLand> TakeChanged();
-  /// Since when it remembers; nullopt: nothing yet.
-  std::optional<Utime> begin() const { return begin_; }
-
   void Forget(const Eigen::Vector2d& own_m);
   void Clear() { *this = {}; }
   std::size_t num_tiles() const { return tiles_.size(); }
 
  private:
   static constexpr std::size_t kMostLooked = 300;
+  static constexpr std::int32_t kTileCells = 32;  // along each side
   struct Tile {
     std::array<std::int8_t, static_cast<std::size_t>(kTileCells) * kTileCells> evidence{};
     std::array<std::uint8_t, static_cast<std::size_t>(kTileCells) * kTileCells> top_dm{};  // over the water; 0: not known
     int num_land = 0;                                                                      // cells
-    Utime seen;
-    std::vector<std::int32_t> days = {};
-    bool is_changed = false;
   };
   using Cell = std::pair<std::int32_t, std::int32_t>;
 
@@ -83,8 +67,6 @@ class LandMemory {
 
   std::map<Cell, Tile> tiles_;  // by the tile's number east, north
   Cell looked_{};               // the tile that was looked through last
-  Utime now_;
-  std::optional<Utime> begin_;
 };
 
 }  // namespace lookout::tracker

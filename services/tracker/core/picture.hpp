@@ -49,7 +49,6 @@ struct Track {
   double bearing_rad = 0.0;
   ClosestApproach approach;
   Encounter encounter = Encounter::kNone;
-  std::int32_t known_days = 0;  // as the given map says; 0: not known
 };
 
 /// What is known after a scan.

@@ -7,15 +7,8 @@
 #include "services/tracker/core/alerts.hpp"
 #include "services/tracker/core/gatherer.hpp"
 #include "services/tracker/core/order.hpp"
-#include "services/tracker/core/own_map.hpp"
 
 namespace lookout::tracker {
-
-/// The map that a process was given, or as much of it as is known.
-struct GivenMap {
-  OwnMap map = {};
-  int num_parts = 1;  // of MAP in which it was told, at least; of a log that lacks some of them `map` holds those before
-};
 
 struct Script {
   /// Scans that one process used while time went on. A process has another stretch where time goes back.
@@ -28,7 +21,6 @@ struct Script {
   /// Taken with a scan, in their order.
   std::map<ScanKey, std::vector<Acknowledgement>> acknowledged;
   std::map<ScanKey, std::vector<Order>> orders;
-  std::map<ScanKey, GivenMap> given;  // by the scan at which the process began
 };
 
 }  // namespace lookout::tracker

@@ -116,7 +116,6 @@ void Step::EndLand() {
 }
 
 void Step::FeedLand() {
-  known_.land.AdvanceTo(scan_.end_time);
   for (std::size_t i = 0; i < sightings_.size(); ++i) {
     const auto& seen = sightings_[i].seen;
     if (sightings_[i].use == Sighting::Use::kLand) land_ids_.push_back(seen.segment_id);

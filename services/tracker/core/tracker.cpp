@@ -9,9 +9,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
-#include "services/tracker/core/own_map.hpp"
 #include "services/tracker/core/publish.hpp"
-#include "services/tracker/core/standing.hpp"
 #include "services/tracker/core/step.hpp"
 #include "services/tracker/core/turning.hpp"
 
@@ -33,7 +31,6 @@ struct Tracker::Memory {
   explicit Memory(const TrackerParams& params) : known{Sight(params.T_vessel_lidar, params.reference_point_above_water_m, params.max_range_m)} {}
 
   Known known;
-  StandingThings standing = {};
   std::optional<Utime> time;
   Datum datum;
   std::optional<Pose> own;
@@ -67,7 +64,6 @@ void Tracker::Reset() {
   memory_->known.land_pieces.Clear();
   memory_->known.clutter = {};
   memory_->known.watched.Clear();
-  memory_->standing.ForgetTracks();
   memory_->time.reset();
   memory_->own.reset();
   memory_->turn.Reset();
@@ -87,7 +83,6 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   memory.picture = step.TakePicture();
   memory.picture.tracks = Published(scan, params_, self, memory.known.tracks);
   memory.ForgetEnded();
-  memory.standing.Update(scan, memory.picture.is_sight_known ? &memory.known.sight : nullptr, params_.max_range_m, memory.picture.tracks);
   if (self) memory.LookAtLand(*scan.own, *self, params_.encounter);
   return memory.picture;
 }
@@ -144,12 +139,6 @@ void Tracker::Memory::LookAtLand(const Pose& here, const Moving& self, const Enc
   if (!self.velocity_mps.isZero(0.0)) picture.land_approach = ApproachToLand(here, self, shore_m, params, kOwnVelocitySdMps);
 }
 
-void Tracker::GiveMap(const OwnMap& map) { memory_->standing.Give(map.things); }
-
-OwnMap Tracker::TakeMap() { return {.things = memory_->standing.TakeChanged(), .land = memory_->known.land.TakeChanged()}; }
-
-std::optional<Utime> Tracker::land_begin() const { return memory_->known.land.begin(); }
-
 std::vector<Counter> Tracker::counters() const {
   const Memory& memory = *memory_;
   return {{"tracks", static_cast<std::int64_t>(memory.known.tracks.size())},
@@ -160,11 +149,7 @@ std::vector<Counter> Tracker::counters() const {
           {"land_tiles", static_cast<std::int64_t>(memory.known.land.num_tiles())},
           {"restarts_by_time", memory.num_restarts_time},
           {"restarts_by_datum", memory.num_restarts_datum},
-          {"restarts_by_jump", memory.num_restarts_jump},
-          {"map_things_given", memory.standing.num_given()},
-          {"map_things_known", memory.standing.num_known_seen()},
-          {"map_things_gone", memory.standing.num_gone()},
-          {"map_things_over_limit", memory.standing.num_over_limit()}};
+          {"restarts_by_jump", memory.num_restarts_jump}};
 }
 
 }  // namespace lookout::tracker

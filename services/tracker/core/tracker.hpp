@@ -26,8 +26,6 @@ struct TrackerParams {
   double end_probability = 0.01;
 };
 
-struct OwnMap;
-
 class Tracker {
  public:
   explicit Tracker(const TrackerParams& params);
@@ -41,14 +39,6 @@ class Tracker {
   void SetEncounter(const EncounterParams& encounter);
   /// Start mark: everything is forgotten but the next id.
   void Reset();
-
-  /// The map of days before, maybe an empty one: once. Until then no map is kept. Tracks say where a thing of it is (known_days); nothing else
-  /// depends on it, and its land is not remembered as land.
-  void GiveMap(const OwnMap& map);
-  /// What has changed of the map since the last call: things that stand and land, as map_t of KEPT says.
-  OwnMap TakeMap();
-  /// Since when land is remembered; nullopt: nothing yet.
-  std::optional<Utime> land_begin() const;
 
   std::vector<Counter> counters() const;
 

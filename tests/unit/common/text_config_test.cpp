@@ -11,8 +11,10 @@
 
 #include "common/config/boat.hpp"
 #include "config/schema/boat.pb.h"
+#include "config/schema/georeferencer.pb.h"
 #include "config/schema/recorder.pb.h"
 #include "config/schema/segmenter.pb.h"
+#include "config/schema/tracker.pb.h"
 #include "config/schema/vlp16.pb.h"
 #include "tests/support/files.hpp"
 
@@ -47,6 +49,18 @@ TEST(TextConfig, NamesEveryFactThatIsMissing) {
 }
 
 TEST(TextConfig, RefusesUnknownFieldsWithTheirLine) { EXPECT_NE(VlpFaults(kGoodVlp + "\nno_such_field: 1\n").find("f.txtpb:5:"), std::string::npos); }
+
+// Protobuf itself reads over names that a schema reserves.
+TEST(TextConfig, SaysOfFieldsThatAreGoneWhatToDo) {
+  Tracker tracker;
+  EXPECT_EQ(
+      FaultsOf("cpa_limit_m: 4\nmap: \"lake.geojson\"\nwarning_tcpa_s: 20\n", tracker),
+      "f.txtpb:2: map: is gone: the tracker reads no map. Delete the line; lookout-export --table map makes the map out of the logs of many days\n"
+      "f.txtpb:3: warning_tcpa_s: is gone: a warning means that no more time is left than this boat needs. Delete the line, and set reaction_s, "
+      "deceleration_mps2 and turn_rate_degps");
+  Georeferencer georeferencer;
+  EXPECT_EQ(FaultsOf("guard_zone { range_m: 10 }\n", georeferencer), "f.txtpb:1: guard_zone: is gone from here: move it to tracker.txtpb");
+}
 
 TEST(TextConfig, RefusesNumbersThatAreNotFinite) {
   EXPECT_EQ(VlpFaults("source: UDP\nbind_address: \"\"\ncut_azimuth_deg: nan\n"), "f.txtpb:3: cut_azimuth_deg: must be a finite number (is nan)");

@@ -12,8 +12,6 @@
 
 #include "common/bus/log_file.hpp"
 #include "common/bus/memory_bus.hpp"
-#include "lookout/map_t.hpp"
-#include "services/tracker/map_file.hpp"
 #include "services/tracker/params.hpp"
 #include "services/tracker/service.hpp"
 #include "tests/support/files.hpp"
@@ -67,7 +65,7 @@ class LiveRun : public ::testing::Test {
   }
   void Start() {
     process_ = std::make_unique<Process>(config_, handover_);
-    for (const auto* channel : {&bus::kTracks, &bus::kAlerts, &bus::kMap}) {
+    for (const auto* channel : {&bus::kTracks, &bus::kAlerts}) {
       process_->bus.SubscribeRaw(*channel, [this](std::string_view name, Bytes bytes) {
         live_[std::string(name)].emplace_back(bytes.begin(), bytes.end());
         Record(name, bytes);
@@ -158,37 +156,6 @@ class LiveRun : public ::testing::Test {
     message.num_acknowledged = static_cast<std::int32_t>(message.acknowledged.size());
     Record(bus::kAlerts.name, bus::Encode(message));
   }
-  // A config of the live run whose tracker is given a map: what stands ahead, seen on so many days, and land to fill so many parts of MAP, or more.
-  void GiveMap(int num_days, int num_parts = 1) {
-    tracker::OwnMap map;
-    auto& thing = map.things.emplace_back();
-    const auto place = Datum{43.7, -72.3, 100.0}.Map().Reverse({0.2, 60.2, 0.0});
-    thing.latitude_deg = place.latitude_deg;
-    thing.longitude_deg = place.longitude_deg;
-    thing.deviation_m = 1.0 / 3.0;  // MAP rounds it
-    thing.length_m = 0.7;
-    thing.top_above_water_m = 1.0;
-    thing.outline_m = {{-0.3, -0.3}, {0.3, -0.3}, {0.0, 0.3}};
-    for (int day = 0; day < num_days; ++day) thing.days.push_back({20'000 + day, 5});
-    std::vector<std::int32_t> days(100);
-    std::iota(days.begin(), days.end(), 20'000);
-    for (int i = 0; i < 300 * (num_parts - 1); ++i) map.land.push_back({{600'000 + i, 650'000}, {}, days, {7}});
-    config_ = folder_ / "config";
-    fs::create_directories(config_);
-    for (const auto* file : {"boat.txtpb", "segmenter.txtpb"}) {
-      fs::copy_file(support::kDemoConfig / file, config_ / file, fs::copy_options::overwrite_existing);
-    }
-    support::WriteFile(config_ / "map.geojson", tracker::MapText(map));
-    support::WriteFile(config_ / "tracker.txtpb", std::string(kTrackerText) + "map: \"map.geojson\"\n");
-  }
-  // Of the track in the latest TRACKS that is sure to be there.
-  std::int32_t KnownDays() const {
-    const auto message = bus::Decode<tracks_t>(live_.at("TRACKS").back()).value();
-    for (const auto& track : message.tracks) {
-      if (track.status == track_t::STATUS_CONFIRMED) return track.known_days;
-    }
-    return -1;
-  }
   alerts_t LastAlerts() const { return bus::Decode<alerts_t>(live_.at("ALERTS").back()).value(); }
 
   Messages Replay() {
@@ -206,7 +173,7 @@ class LiveRun : public ::testing::Test {
   }
   void ExpectReplayEqualsLive() {
     const auto messages = Replay();
-    for (const auto* name : {"TRACKS", "ALERTS", "MAP"}) {
+    for (const auto* name : {"TRACKS", "ALERTS"}) {
       ASSERT_TRUE(messages.contains(name)) << name;
       EXPECT_EQ(messages.at(name).size(), live_.at(name).size()) << name;
       EXPECT_TRUE(messages.at(name) == live_.at(name)) << name;
@@ -292,45 +259,6 @@ TEST_F(LiveRun, WithoutAlertsInTheLogTakesAcknowledgementsAsTheyCome) {
   const auto messages = Replay();
   EXPECT_EQ(messages.at("TRACKS").size(), 60U);
   EXPECT_EQ(messages.at("ALERTS").size(), 60U);
-}
-
-// The replay has no map in its config: what the live run was given stands in its log.
-TEST_F(LiveRun, IsGivenTheSameMap) {
-  GiveMap(4);
-  Start();
-  for (int i = 0; i < 100; ++i) SendScan(i);
-  EXPECT_EQ(KnownDays(), 4);
-  process_.reset();  // killed; the next one finds another map
-  GiveMap(2);
-  Start();
-  for (int i = 100; i < 150; ++i) SendScan(i);
-  EXPECT_EQ(KnownDays(), 0) << "two days are not enough";
-  fs::remove(config_ / "map.geojson");
-  ExpectReplayEqualsLive();
-}
-
-TEST_F(LiveRun, IsGivenALargeMapInPartsOneWithEachScan) {
-  GiveMap(4, 12);
-  Start();
-  for (int i = 0; i < 8; ++i) SendScan(i);
-  ASSERT_EQ(live_.at("MAP").size(), 7U);
-  const auto first = bus::Decode<map_t>(live_.at("MAP").front()).value();
-  EXPECT_EQ(first.source, map_t::SOURCE_GIVEN);
-  EXPECT_GE(first.num_parts, 12);
-  EXPECT_EQ(KnownDays(), 0) << "it is used once it is told";
-  for (int i = 8; i < 80; ++i) SendScan(i);
-  EXPECT_EQ(KnownDays(), 4);
-  EXPECT_EQ(std::ssize(live_.at("MAP")), first.num_parts);
-  ExpectReplayEqualsLive();
-}
-
-// The log ends before all of the map was told: then the live run has not used it either.
-TEST_F(LiveRun, CutWhileItsMapIsToldUsesNothingOfIt) {
-  GiveMap(4, 12);
-  Start();
-  for (int i = 0; i < 8; ++i) SendScan(i);
-  ASSERT_EQ(live_.at("MAP").size(), 7U);
-  ExpectReplayEqualsLive();
 }
 
 // What people took note of they need not take note of again.

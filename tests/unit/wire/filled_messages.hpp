@@ -13,7 +13,6 @@
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
-#include "lookout/map_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/order_t.hpp"
@@ -124,22 +123,6 @@ inline void Fill(tracks_t& m) {
   m.waterline_east_m = m.waterline_north_m = {1.0F, 2.0F};
 }
 
-inline void Fill(map_t& m) {
-  m.num_things = 1;
-  m.things.resize(1);
-  m.things[0].num_days = 2;
-  m.things[0].day = {20'000, 20'001};
-  m.things[0].num_day_scans = {7, 8};
-  m.things[0].num_outline = 3;
-  m.things[0].outline_east_m = m.things[0].outline_north_m = {0.0F, 1.0F, 0.0F};
-  m.num_land = 1;
-  m.land.resize(1);
-  m.land[0].num_days = 1;
-  m.land[0].day = {20'001};
-  m.land[0].num_cells = 2;
-  m.land[0].cell = {5, 6};
-}
-
 inline void Fill(alert_ack_t& m) { m.source = "page"; }
 
 inline void Fill(order_t& m) { m.source = "page"; }
@@ -210,7 +193,6 @@ void ForEachFilledMessage(Use use) {
   fill_and_use(obstacles_t{});
   fill_and_use(tracks_t{});
   fill_and_use(alerts_t{});
-  fill_and_use(map_t{});
   fill_and_use(alert_ack_t{});
   fill_and_use(order_t{});
   fill_and_use(health_t{});

@@ -4,7 +4,7 @@ import type { BoatFacts, Frame } from "./link.js";
 import { Refused } from "./messages/reader.js";
 
 /** Channels that a picture is made of. */
-export const kPictureChannels = ["LIDAR_SCAN", "SEGMENTS", "OBSTACLES", "TRACKS", "ALERTS", "POSE", "LIDAR_CLOCK", "GNSS_FIX", "HEALTH", "RUN_INFO", "MAP"];
+export const kPictureChannels = ["LIDAR_SCAN", "SEGMENTS", "OBSTACLES", "TRACKS", "ALERTS", "POSE", "LIDAR_CLOCK", "GNSS_FIX", "HEALTH", "RUN_INFO"];
 
 /** Returns of a scan that measured something, as arrays with one number (or three) per return. */
 export interface Returns {
@@ -56,7 +56,6 @@ export interface Picture {
   fix: wire.GnssFix | null;
   health: wire.Health[];
   run_info: wire.RunInfo | null;
-  map_things: wire.MapThing[];
   /** When each channel last came, by the clock of whoever received it (server or log), by name. */
   times_us: ReadonlyMap<string, number>;
 }
@@ -94,8 +93,6 @@ export class Assembler {
   private fix: wire.GnssFix | null = null;
   private readonly health = new Map<string, { health: wire.Health; utime_us: number }>();
   private run_info: wire.RunInfo | null = null;
-  private readonly mapThings = new Map<number, wire.MapThing>();
-  private mapBegin = 0;
   private readonly times = new Map<string, number>();
   /** Messages that could not be read, by channel. */
   readonly refused = new Map<string, number>();
@@ -144,13 +141,6 @@ export class Assembler {
         return false;
       }
       case "RUN_INFO": this.run_info = wire.RunInfo.decode(bytes); return false;
-      case "MAP": {
-        const map = wire.Map.decode(bytes);
-        if (map.begin_utime_us !== this.mapBegin) this.mapThings.clear();
-        this.mapBegin = map.begin_utime_us;
-        for (const thing of map.things) this.mapThings.set(thing.id, thing);
-        return false;
-      }
       default: return false;
     }
   }
@@ -199,7 +189,7 @@ export class Assembler {
       clock: this.clock, fix: this.fix,
       health: [...this.health.values()].filter((entry) => newest - entry.utime_us < 10e6).map((entry) => entry.health)
         .sort((a, b) => (a.process < b.process ? -1 : 1)),
-      run_info: this.run_info, map_things: [...this.mapThings.values()], times_us: new Map(this.times),
+      run_info: this.run_info, times_us: new Map(this.times),
     };
   }
 }

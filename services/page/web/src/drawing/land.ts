@@ -1,6 +1,5 @@
-// Land and what stands, as they are remembered, and obstacles of a boat that does not know where it is.
+// Land as it is remembered, and obstacles of a boat that does not know where it is.
 import type { Picture } from "../picture.js";
-import { offset } from "./mercator.js";
 import { boatX, boatY, tracePath, type Scene } from "./scene.js";
 
 const kCell_m = 0.5;  // of the land memory
@@ -42,31 +41,6 @@ export function paintLand(scene: Scene): void {
 const kJump_m = 4;
 function jumps(obstacle: Picture["obstacles"][number], i: number): boolean {
   return Math.hypot(obstacle.waterline_vessel_x_m[i]! - obstacle.waterline_vessel_x_m[i - 1]!, obstacle.waterline_vessel_y_m[i]! - obstacle.waterline_vessel_y_m[i - 1]!) > kJump_m;
-}
-
-/** What the boat's own map says that stands: outlines, faint, since it is not what is seen now. */
-export function paintKnownThings(scene: Scene): void {
-  const { context, plane, own, theme, picture } = scene;
-  const { pose } = picture;
-  if (!own.isOnMap || pose === null || !Number.isFinite(pose.latitude_deg)) return;
-  context.strokeStyle = theme.css.muted;
-  context.lineWidth = 1.2;
-  context.setLineDash([2, 3]);
-  context.beginPath();
-  for (const thing of picture.map_things) {
-    if (thing.state === 2) continue;
-    const [east, north] = offset(pose.latitude_deg, pose.longitude_deg, thing.latitude_deg, thing.longitude_deg);
-    if (!plane.sees(own.east_m + east, own.north_m + north, thing.length_m)) continue;
-    const x = plane.x(own.east_m + east, own.north_m + north), y = plane.y(own.east_m + east, own.north_m + north);
-    if (thing.num_outline < 3 || thing.length_m * plane.px_per_m < 6) { context.moveTo(x + 5, y); context.arc(x, y, 5, 0, 2 * Math.PI); }
-    for (let i = 0; i < thing.num_outline && thing.num_outline > 2; ++i) {
-      const e = own.east_m + east + thing.outline_east_m[i]!, n = own.north_m + north + thing.outline_north_m[i]!;
-      if (i === 0) context.moveTo(plane.x(e, n), plane.y(e, n)); else context.lineTo(plane.x(e, n), plane.y(e, n));
-    }
-    if (thing.num_outline > 2) context.closePath();
-  }
-  context.stroke();
-  context.setLineDash([]);
 }
 
 /** Obstacles of this scan that no track explains: with a place on the map or only around the boat. */

@@ -123,12 +123,11 @@ export const en = {
       close: "Close",
       facts: {
         first: "Seen first", seen: "Seen last", size: "Length × width", top: "Top above water", exists: "Is there", moves: "Moves",
-        close: "Comes too near", distance: "Hull to hull", drift: "Bearing drift", seenShare: "Outline seen", place: "Position", known: "On the map",
+        close: "Comes too near", distance: "Hull to hull", drift: "Bearing drift", seenShare: "Outline seen", place: "Position",
         deviation: "Deviation",
       },
       percent: (share: number) => `${Math.round(100 * share)} %`,
       perSecond: (degrees: string) => `${degrees}°/s`,
-      days: (count: number) => `${count} days`,
     },
     health: {
       states: ["OK", "DEGRADED", "FAILED", "STARTING"],

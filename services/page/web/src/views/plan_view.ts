@@ -2,7 +2,7 @@
 import { paintAlertPlaces } from "../drawing/alerts.js";
 import { currentTheme, returnColours, type Theme } from "../drawing/colours.js";
 import { drawLabels } from "../drawing/labels.js";
-import { paintKnownThings, paintLand, paintObstacles } from "../drawing/land.js";
+import { paintLand, paintObstacles } from "../drawing/land.js";
 import { paintLegend } from "../drawing/legend.js";
 import { isOnOwn, Measure } from "../drawing/measure.js";
 import { paintGuardZones, paintOwnBoat, paintRings, paintScale } from "../drawing/own_boat.js";
@@ -125,7 +125,6 @@ export abstract class PlanView implements View {
     taken.push({ x: 0, y: height_px - 44, width: 150, height: 44 }, { x: width_px - 60, y: height_px - 56 * 6, width: 60, height: 56 * 6 });
     if (this.hasRings) taken.push(...paintRings(scene));
     paintGuardZones(scene);
-    paintKnownThings(scene);
     paintLand(scene);
     paintObstacles(scene);
     if (scene.own.isOnMap) {

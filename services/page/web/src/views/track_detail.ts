@@ -65,7 +65,6 @@ export class TrackDetail {
     facts.set(names.first, texts.panels.health.ago(duration(Math.max(0, (picture.end_utime_us - track.first_utime_us) / 1e6))));
     facts.set(names.seen, texts.panels.health.ago(duration(Math.max(0, (picture.end_utime_us - track.seen_utime_us) / 1e6))));
     facts.set(names.place, place(track.latitude_deg, track.longitude_deg), true);
-    facts.set(names.known, track.known_days > 0 ? words.days(track.known_days) : null);
   }
 }
 

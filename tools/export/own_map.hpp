@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -10,20 +11,15 @@
 
 #include "common/core/geodesy.hpp"
 #include "common/core/utime.hpp"
-#include "services/tracker/core/tracker.hpp"
 
-namespace lookout::tracker {
+namespace lookout::exporter {
 
-/// Bounds of a map: what is beyond is refused in a file, and left out of what is kept.
+/// Bounds of a map: what is beyond is left out.
 inline constexpr std::size_t kMostMapThings = 4000;
 inline constexpr std::size_t kMostMapTiles = 40'000;
 inline constexpr std::size_t kMostMapCells = 400'000;
 inline constexpr std::size_t kMostMapDays = 100;  // of a thing or a tile: the newest
 inline constexpr std::int32_t kMostDayScans = 10'000'000;
-inline constexpr std::size_t kMostMapOutline = 64;
-inline constexpr double kMostMapThingM = 1000.0;       // any length of a thing, and its deviation
-inline constexpr std::int32_t kLeastMapDay = -25'567;  // 1900-01-01
-inline constexpr std::int32_t kMostMapDay = 84'005;    // 2199-12-31
 
 /// On so many days a thing was seen that is called known.
 inline constexpr int kKnownDays = 3;
@@ -39,25 +35,20 @@ struct DayScans {
   friend bool operator==(const DayScans&, const DayScans&) = default;
 };
 
-/// As in map_thing_t, which says what the members mean.
 struct MapThing {
-  enum class State : std::int32_t { kUnseen = 0, kSeen = 1, kGone = 2 };  // numbers are those of the wire
-
-  std::int64_t id = 0;
-  TrackKind kind = TrackKind::kUnknown;
-  State state = State::kUnseen;
+  std::int32_t kind = 0;  // as in track_t
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
-  double deviation_m = 0.0;
+  double deviation_m = 0.0;  // of the place, along its worst direction, with the error of the own position
   double length_m = 0.0;
   double width_m = 0.0;
   double length_bearing_rad = 0.0;
   double top_above_water_m = 0.0;
   Utime first;
   Utime seen;
-  std::optional<Utime> gone;
+  std::optional<Utime> gone;               // its place was found empty, and it was not seen since
   std::vector<DayScans> days;              // rising
-  std::vector<Eigen::Vector2d> outline_m;  // from its centre; at least one corner
+  std::vector<Eigen::Vector2d> outline_m;  // from its centre, along the axes of the map frame in which it was measured; at least one corner
 };
 
 /// A square of 32 x 32 cells.
@@ -71,7 +62,6 @@ struct MapTile {
 inline constexpr std::int32_t kTileCells = 32;
 inline constexpr std::int32_t kCellsOfTile = kTileCells * kTileCells;
 
-/// As in map_land_t.
 struct MapLand {
   MapTile tile;
   Utime seen;
@@ -80,7 +70,7 @@ struct MapLand {
 };
 
 struct OwnMap {
-  std::vector<MapThing> things;  // by id
+  std::vector<MapThing> things;
   std::vector<MapLand> land;
 };
 
@@ -107,8 +97,6 @@ struct Cell {
 Cell CellAt(double latitude_deg, double longitude_deg);
 /// The middle of a cell, on the ellipsoid.
 GeodeticPlace MiddleOf(const Cell& cell);
-/// Whether the tile is on the earth.
-bool Has(const MapTile& tile);
 
 }  // namespace earth_grid
 
@@ -118,4 +106,4 @@ double SamePlaceM(double deviation_m, double other_deviation_m);
 /// Whether two lengths may be of one thing that is seen from other sides.
 bool AreOfOneThing(double length_m, double other_length_m);
 
-}  // namespace lookout::tracker
+}  // namespace lookout::exporter

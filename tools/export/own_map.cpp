@@ -1,4 +1,4 @@
-#include "services/tracker/core/own_map.hpp"
+#include "tools/export/own_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
 
-namespace lookout::tracker {
+namespace lookout::exporter {
 
 void AddDay(std::int32_t day, std::vector<std::int32_t>& days) {
   const auto place = std::ranges::lower_bound(days, day);
@@ -30,7 +30,6 @@ namespace {
 
 constexpr std::int32_t kCellsPerDeg = 220'800;
 constexpr std::int32_t kRows = 180 * kCellsPerDeg;  // of cells
-constexpr std::int32_t kTileRows = kRows / kTileCells;
 static_assert(kRows % kTileCells == 0);
 
 // Cells to a degree of longitude in a row of tiles. A degree of longitude at the equator is 0.7 % longer than one of latitude: cells are wider by it.
@@ -56,10 +55,6 @@ GeodeticPlace MiddleOf(const Cell& cell) {
   return {(row + 0.5) / kCellsPerDeg - 90.0, (column + 0.5) / CellsPerDegOf(cell.tile.north) - 180.0, 0.0};
 }
 
-bool Has(const MapTile& tile) {
-  return tile.north >= 0 && tile.north < kTileRows && tile.east >= 0 && tile.east <= 360 * CellsPerDegOf(tile.north) / kTileCells;
-}
-
 }  // namespace earth_grid
 
 double SamePlaceM(double deviation_m, double other_deviation_m) {
@@ -75,4 +70,4 @@ bool AreOfOneThing(double length_m, double other_length_m) {
   return length_m <= kMostRatio * other_length_m + kBesideM && other_length_m <= kMostRatio * length_m + kBesideM;
 }
 
-}  // namespace lookout::tracker
+}  // namespace lookout::exporter
