@@ -33,7 +33,7 @@ inline constexpr std::array kServices{
                10,
                "network",
                "checks the config",
-               "tracks, land, what stands, alerts, poses, waiting scans",
+               "tracks, land, alerts, poses, waiting scans",
                {&kObstacles, &kSegments, &kLidarScan, &kPose, &kAlertAck, &kOrders}},
     ServiceRow{"plotter",
                "targets and alerts for chart plotters, Signal K and NMEA 2000",
