@@ -25,7 +25,7 @@ install(DIRECTORY ${units_folder}/ DESTINATION lib/systemd/system)
 install(FILES systemd/sysusers.conf DESTINATION lib/sysusers.d RENAME lookout.conf)
 install(FILES systemd/sysctl.conf DESTINATION lib/sysctl.d RENAME 60-lookout.conf)
 # Every page under its own path, so that the links between them lead somewhere; config is what they show of the repository beside pages.
-foreach(folder common config deploy lcmtypes logs services tools cmake)
+foreach(folder common config deploy lcmtypes logs services tools lab cmake)
   file(GLOB_RECURSE folder_pages RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.md)
   foreach(page ${folder_pages})
     get_filename_component(page_folder ${page} DIRECTORY)

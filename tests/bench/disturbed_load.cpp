@@ -12,11 +12,11 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "lab/sim/scene_file.hpp"
 #include "tests/bench/disturbances.hpp"
 #include "tests/bench/disturbed_judge.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/files.hpp"
-#include "tools/sim/scene_file.hpp"
 
 namespace {
 

@@ -2,12 +2,12 @@
 #include <benchmark/benchmark.h>
 #include <vector>
 
+#include "lab/sim/navigation.hpp"
 #include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/navigator.hpp"
 #include "services/navigator/params.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/scenes.hpp"
-#include "tools/sim/navigation.hpp"
 
 namespace lookout::navigator {
 namespace {

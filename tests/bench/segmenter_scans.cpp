@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "lab/eval/baselines/peers.hpp"
 #include "services/segmenter/core/segmenter.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
-#include "tools/eval/baselines/peers.hpp"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "common/config/boat.hpp"
+#include "lab/sim/simulation.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/scenes.hpp"
-#include "tools/sim/simulation.hpp"
 
 namespace lookout::sim {
 namespace {

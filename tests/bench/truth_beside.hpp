@@ -10,9 +10,9 @@
 #include "common/config/boat.hpp"
 #include "common/core/geodesy.hpp"
 #include "common/core/utime.hpp"
+#include "lab/sim/motion.hpp"
+#include "lab/sim/scene.hpp"
 #include "lookout/obstacles_t.hpp"
-#include "tools/sim/motion.hpp"
-#include "tools/sim/scene.hpp"
 
 namespace lookout::bench {
 

@@ -14,11 +14,11 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/config/boat.hpp"
+#include "lab/eval/evaluation.hpp"
+#include "lab/sim/simulation.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/scenes.hpp"
-#include "tools/eval/evaluation.hpp"
 #include "tools/replay/chain.hpp"
-#include "tools/sim/simulation.hpp"
 
 namespace lookout {
 namespace {

@@ -11,12 +11,12 @@
 #include "common/bus/memory_bus.hpp"
 #include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
+#include "lab/sim/motion.hpp"
+#include "lab/sim/navigation.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/scenes.hpp"
-#include "tools/sim/motion.hpp"
-#include "tools/sim/navigation.hpp"
 
 namespace lookout::navigator {
 

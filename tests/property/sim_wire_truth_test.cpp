@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "lab/sim/simulation.hpp"
+#include "lab/sim/sinks.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/simulation.hpp"
-#include "tools/sim/sinks.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "lab/eval/track_sources.hpp"
 #include "lookout/alerts_t.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/track_sources.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout::eval {

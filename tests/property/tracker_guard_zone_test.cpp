@@ -18,14 +18,14 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/memory_bus.hpp"
 #include "common/config/boat.hpp"
+#include "lab/sim/scene_file.hpp"
+#include "lab/sim/simulation.hpp"
 #include "services/tracker/core/dangers.hpp"
 #include "services/tracker/params.hpp"
 #include "services/tracker/service.hpp"
 #include "services/tracker/wire.hpp"
 #include "tests/support/files.hpp"
 #include "tools/replay/chain.hpp"
-#include "tools/sim/scene_file.hpp"
-#include "tools/sim/simulation.hpp"
 
 namespace lookout {
 namespace {

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "lab/eval/track_run.hpp"
+#include "lab/eval/track_sources.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/track_run.hpp"
-#include "tools/eval/track_sources.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout::eval {

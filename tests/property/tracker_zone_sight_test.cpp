@@ -10,13 +10,13 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/config/boat.hpp"
+#include "lab/eval/captures.hpp"
+#include "lab/eval/track_sources.hpp"
+#include "lab/sim/scene_file.hpp"
+#include "lab/sim/simulation.hpp"
 #include "lookout/alerts_t.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/captures.hpp"
-#include "tools/eval/track_sources.hpp"
 #include "tools/replay/chain.hpp"
-#include "tools/sim/scene_file.hpp"
-#include "tools/sim/simulation.hpp"
 
 namespace lookout {
 namespace {

@@ -4,9 +4,9 @@
 #include <set>
 #include <string>
 
+#include "lab/sim/simulation.hpp"
 #include "services/vlp16/core/decoder.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/simulation.hpp"
 
 namespace lookout::vlp16 {
 namespace {

@@ -8,15 +8,15 @@
 #include <tuple>
 
 #include "common/bus/memory_bus.hpp"
+#include "lab/sim/faulty_network.hpp"
+#include "lab/sim/simulation.hpp"
+#include "lab/sim/sinks.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/service.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
-#include "tools/sim/faulty_network.hpp"
-#include "tools/sim/simulation.hpp"
-#include "tools/sim/sinks.hpp"
 
 namespace lookout::vlp16 {
 namespace {

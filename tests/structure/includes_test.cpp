@@ -60,7 +60,8 @@ std::string KindOf(const std::string& include) {
   static const std::regex kCore("services/[^/]+/core/");
   if (std::smatch core; std::regex_search(include, core, kCore, std::regex_constants::match_continuous))
     return include.substr(0, static_cast<std::size_t>(core.length()) - 1);
-  if (include.rfind("services/", 0) == 0 || include.rfind("tools/", 0) == 0) return include.substr(0, include.rfind('/'));
+  if (const auto top = include.substr(0, include.find('/')); top == "services" || top == "tools" || top == "lab")
+    return include.substr(0, include.rfind('/'));
   return "std";
 }
 
@@ -142,6 +143,20 @@ TEST(Structure, ModulesIncludeOnlyWhatTheyMay) {
     }
   }
   EXPECT_GT(num_checked, 100);
+}
+
+// What sails and what measures: tools are for the boat and its logs, the laboratory uses them, and nothing uses the laboratory.
+TEST(Structure, NothingThatSailsIncludesTheLaboratory) {
+  int num_checked = 0;
+  for (const auto& folder : {"common", "services", "tools"}) {
+    for (const auto& file : SourcesBelow(kSources / folder)) {
+      for (const auto& include : Includes(file)) {
+        EXPECT_NE(include.rfind("lab/", 0), 0U) << fs::relative(file, kSources).string() << " includes " << include;
+        ++num_checked;
+      }
+    }
+  }
+  EXPECT_GT(num_checked, 1000);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::vector<fs::path> FilesWithEnding(const std::vector<std::string>& endings) {
     if (std::ranges::find(endings, file.extension().string()) != endings.end()) files.push_back(file);
   };
   for (const auto& entry : fs::directory_iterator(kSources)) add(entry.path());
-  for (const auto& folder : {"common", "config", "deploy", "lcmtypes", "logs", "services", "tests", "tools"}) {
+  for (const auto& folder : {"common", "config", "deploy", "lcmtypes", "logs", "services", "tests", "tools", "lab"}) {
     for (auto entry = fs::recursive_directory_iterator(kSources / folder); entry != fs::recursive_directory_iterator(); ++entry) {
       // Packages of npm, and what is built of them, are written by others.
       if (entry->path().filename() == "node_modules" || entry->path().filename() == "vendor") {

@@ -25,7 +25,7 @@ using lookout::support::ReadFile;
 TEST(Structure, OutputsAreWrittenByOneClass) {
   const std::regex exempt("common/io/output_file\\.cpp|common/bus/log_file\\.cpp|services/recorder/io/disk_writer\\.cpp");
   const std::regex writes(R"(ofstream|\bfopen\(|freopen|pcap_dump_open\(|lcm_eventlog_create|O_CREAT|std::fstream)");
-  for (const auto& folder : {"common", "services", "tools"}) {
+  for (const auto& folder : {"common", "services", "tools", "lab"}) {
     for (const auto& file : SourcesBelow(kSources / folder)) {
       const std::string path = fs::relative(file, kSources).string();
       if (std::regex_match(path, exempt)) continue;
@@ -38,7 +38,7 @@ TEST(Structure, OutputsAreWrittenByOneClass) {
 
 // Names in logs, texts of messages and of configs reach the log of a process: no control character may pass to a terminal.
 TEST(Structure, LinesOfTheLogAreMadePrintable) {
-  for (const auto& folder : {"common", "services", "tools"}) {
+  for (const auto& folder : {"common", "services", "tools", "lab"}) {
     for (const auto& file : SourcesBelow(kSources / folder)) {
       const std::string path = fs::relative(file, kSources).string();
       const std::string text = ReadFile(file);
@@ -65,7 +65,7 @@ TEST(Structure, OnlyMainIoAndRuntimeReadTheClock) {
 TEST(Structure, NoProgramTakesTheUsersLocale) {
   const std::regex locale(R"(\b(set|new|use)locale\s*\(|std::locale\b(?!::classic))");
   int num_checked = 0;
-  for (const auto& folder : {"common", "services", "tools"}) {
+  for (const auto& folder : {"common", "services", "tools", "lab"}) {
     for (const auto& file : SourcesBelow(kSources / folder)) {
       EXPECT_FALSE(std::regex_search(ReadFile(file), locale)) << fs::relative(file, kSources).string() << " takes a locale";
       ++num_checked;
@@ -119,7 +119,7 @@ TEST(Structure, ReadmeOfTheTypesHoldsTheChannelTable) {
 
 TEST(Structure, ReadmeNamesEveryProgram) {
   const std::string readme = ReadFile(kSources / "README.md");
-  for (const auto& folder : {"services", "tools"}) {
+  for (const auto& folder : {"services", "tools", "lab"}) {
     for (const auto& entry : fs::directory_iterator(kSources / folder)) {
       if (!entry.is_directory()) continue;
       const std::string program = "lookout-" + entry.path().filename().string();
@@ -211,7 +211,7 @@ TEST(Structure, TheServiceTableIsInTheOrderOfTheData) {
 TEST(Structure, DecisionsStandBesideTheReadmeAndBeginWithADate) {
   const std::regex dated(R"(^(\*\*)?20[0-9]{2}-[0-9]{2}-[0-9]{2}[.,: *])");
   int num_files = 0;
-  for (const auto& folder : {"common", "config", "deploy", "lcmtypes", "services", "tests", "tools"}) {
+  for (const auto& folder : {"common", "config", "deploy", "lcmtypes", "services", "tests", "tools", "lab"}) {
     for (const auto& entry : fs::recursive_directory_iterator(kSources / folder)) {
       const std::string path = fs::relative(entry.path(), kSources).string();
       if (entry.path().filename() == "README.md") {
@@ -248,7 +248,7 @@ std::vector<fs::path> Pages() {
   for (const auto& entry : fs::directory_iterator(kSources)) {
     if (entry.path().extension() == ".md") pages.push_back(entry.path());
   }
-  for (const auto& folder : {"config", "deploy", "lcmtypes", "logs", "services", "tests", "tools"}) {
+  for (const auto& folder : {"config", "deploy", "lcmtypes", "logs", "services", "tests", "tools", "lab"}) {
     for (const auto& entry : fs::recursive_directory_iterator(kSources / folder)) {
       const bool is_ours = entry.path().string().find("/node_modules/") == std::string::npos;
       if (is_ours && entry.path().extension() == ".md") pages.push_back(entry.path());
@@ -284,7 +284,7 @@ TEST(Structure, LinksBetweenPagesLeadSomewhere) {
 // Messages that a user looks up are those that the programs print. "..." stands for what differs.
 TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
   std::string code;
-  for (const auto& folder : {"common", "services", "tools"}) {
+  for (const auto& folder : {"common", "services", "tools", "lab"}) {
     for (const auto& file : SourcesBelow(kSources / folder)) code += ReadFile(file);
   }
   code += ReadFile(kSources / "deploy/lookout-up.in");

@@ -36,11 +36,12 @@ while IFS=: read -r file line text; do
       [[ ${options_of[$name]} == *" $option "* ]] || fault "${file#"$source_folder"/}:$line: $name has no $option"
     done
   done
-done < <(grep -nE 'lookout-[a-z0-9]+.*--' "$source_folder"/*.md "$source_folder"/{deploy,lcmtypes,services/*,tools/*}/README.md)
+done < <(grep -nE 'lookout-[a-z0-9]+.*--' "$source_folder"/*.md "$source_folder"/{deploy,lcmtypes,services/*,tools/*,lab/*}/README.md)
 [ "$num_uses" -gt 50 ] || fault "only $num_uses options are used in the pages"
 
 for name in "${!options_of[@]}"; do
   page=$source_folder/tools/${name#lookout-}/README.md
+  [ -e "$page" ] || page=$source_folder/lab/${name#lookout-}/README.md
   [ -e "$page" ] || page=$source_folder/services/${name#lookout-}/README.md
   [ "$name" = lookout-up ] && page=$source_folder/deploy/README.md
   [ -e "$page" ] || { fault "$name has no page"; continue; }

@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "lab/eval/captures.hpp"
+#include "lab/sim/lidar.hpp"
+#include "lab/sim/scene_file.hpp"
+#include "lab/sim/sinks.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/captures.hpp"
-#include "tools/sim/lidar.hpp"
-#include "tools/sim/scene_file.hpp"
-#include "tools/sim/sinks.hpp"
 
 namespace lookout::eval::test {
 

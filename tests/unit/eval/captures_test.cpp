@@ -1,13 +1,13 @@
 // Captures with truth: what is read is what was rendered, and what is wrong is told with file and line.
-#include "tools/eval/captures.hpp"
+#include "lab/eval/captures.hpp"
 
 #include <algorithm>
 #include <numeric>
 
+#include "lab/eval/method_comparison.hpp"
+#include "lab/eval/methods.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/eval/captures_fixture.hpp"
-#include "tools/eval/method_comparison.hpp"
-#include "tools/eval/methods.hpp"
 #include "tools/import/xz_file.hpp"
 
 namespace lookout::eval::test {

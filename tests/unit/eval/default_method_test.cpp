@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
+#include "lab/eval/method_comparison.hpp"
+#include "lab/eval/methods.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/method_comparison.hpp"
-#include "tools/eval/methods.hpp"
 
 namespace lookout::eval {
 namespace {

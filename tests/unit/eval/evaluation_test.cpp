@@ -1,12 +1,12 @@
-#include "tools/eval/evaluation.hpp"
+#include "lab/eval/evaluation.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
 #include <sstream>
 
 #include "common/core/angles.hpp"
+#include "lab/eval/report.hpp"
 #include "tests/unit/eval/truth_fixture.hpp"
-#include "tools/eval/report.hpp"
 
 namespace lookout::eval {
 namespace {

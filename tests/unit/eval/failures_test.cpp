@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "lab/eval/lost_list.hpp"
+#include "lab/eval/scoring.hpp"
+#include "lab/eval/worst_pictures.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/lost_list.hpp"
-#include "tools/eval/scoring.hpp"
-#include "tools/eval/worst_pictures.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tools/eval/truth.hpp"
+#include "lab/eval/truth.hpp"
 
 namespace lookout::eval {
 namespace {

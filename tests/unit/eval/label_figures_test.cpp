@@ -1,4 +1,4 @@
-#include "tools/eval/label_figures.hpp"
+#include "lab/eval/label_figures.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

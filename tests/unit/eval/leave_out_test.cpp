@@ -1,13 +1,13 @@
 // Families that are left out: which evidence is used where, what is refused, and the tables.
-#include "tools/eval/leave_out.hpp"
+#include "lab/eval/leave_out.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <stdexcept>
 
+#include "lab/eval/leave_out_tables.hpp"
+#include "lab/eval/run_plan.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/leave_out_tables.hpp"
-#include "tools/eval/run_plan.hpp"
 
 namespace lookout::eval {
 namespace {

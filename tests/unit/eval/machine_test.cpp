@@ -1,9 +1,9 @@
-#include "tools/eval/machine.hpp"
+#include "lab/eval/machine.hpp"
 
 #include <gtest/gtest.h>
 #include <sstream>
 
-#include "tools/eval/report.hpp"
+#include "lab/eval/report.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -1,5 +1,5 @@
 // From scenes to figures: truth joined to its cells, methods, curves and tables.
-#include "tools/eval/method_comparison.hpp"
+#include "lab/eval/method_comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,14 +11,14 @@
 #include <sstream>
 
 #include "common/config/text_config.hpp"
+#include "lab/eval/against_peers.hpp"
+#include "lab/eval/methods.hpp"
+#include "lab/eval/paper_tests.hpp"
+#include "lab/eval/projection.hpp"
+#include "lab/eval/result_tables.hpp"
+#include "lab/eval/scoring.hpp"
+#include "lab/eval/sweep.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/against_peers.hpp"
-#include "tools/eval/methods.hpp"
-#include "tools/eval/paper_tests.hpp"
-#include "tools/eval/projection.hpp"
-#include "tools/eval/result_tables.hpp"
-#include "tools/eval/scoring.hpp"
-#include "tools/eval/sweep.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/eval/metrics.hpp"
+#include "lab/eval/metrics.hpp"
 
 #include <gtest/gtest.h>
 

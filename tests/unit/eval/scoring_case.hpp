@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tools/eval/scoring.hpp"
+#include "lab/eval/scoring.hpp"
 
 namespace lookout::eval {
 

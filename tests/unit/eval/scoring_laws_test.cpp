@@ -4,8 +4,8 @@
 #include <numeric>
 #include <set>
 
+#include "lab/sim/random.hpp"
 #include "tests/unit/eval/scoring_case.hpp"
-#include "tools/sim/random.hpp"
 
 namespace lookout::eval {
 namespace {

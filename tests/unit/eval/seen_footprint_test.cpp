@@ -1,4 +1,4 @@
-#include "tools/eval/seen_footprint.hpp"
+#include "lab/eval/seen_footprint.hpp"
 
 #include <gtest/gtest.h>
 

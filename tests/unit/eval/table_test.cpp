@@ -1,4 +1,4 @@
-#include "tools/eval/table.hpp"
+#include "lab/eval/table.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "tools/eval/truth_match.hpp"
+#include "lab/eval/truth_match.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/eval/truth.hpp"
+#include "lab/eval/truth.hpp"
 
 #include <gtest/gtest.h>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "tools/eval/alert_geometry.hpp"
+#include "lab/eval/alert_geometry.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <random>
 
 #include "common/core/angles.hpp"
+#include "lab/eval/track_geometry.hpp"
 #include "tests/unit/eval_tracks/track_cases.hpp"
-#include "tools/eval/track_geometry.hpp"
 
 namespace lookout::eval {
 namespace {

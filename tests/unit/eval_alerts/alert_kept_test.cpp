@@ -1,4 +1,4 @@
-#include "tools/eval/alert_kept.hpp"
+#include "lab/eval/alert_kept.hpp"
 
 #include <chrono>
 #include <filesystem>
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "lab/eval/track_sources.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/track_sources.hpp"
 
 namespace lookout::eval {
 namespace {

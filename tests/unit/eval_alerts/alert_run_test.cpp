@@ -1,5 +1,5 @@
 // From the messages of a run to verdicts.
-#include "tools/eval/alert_run.hpp"
+#include "lab/eval/alert_run.hpp"
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
+#include "lab/eval/track_sources.hpp"
+#include "lab/sim/scene_file.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/eval_tracks/track_cases.hpp"
-#include "tools/eval/track_sources.hpp"
 #include "tools/replay/chain.hpp"
-#include "tools/sim/scene_file.hpp"
 
 namespace lookout::eval {
 namespace {

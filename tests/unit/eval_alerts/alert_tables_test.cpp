@@ -1,10 +1,10 @@
-#include "tools/eval/alert_tables.hpp"
+#include "lab/eval/alert_tables.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
 
 #include "common/core/angles.hpp"
-#include "tools/eval/figures.hpp"
+#include "lab/eval/figures.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/eval/baselines/depth_clustering.hpp"
+#include "lab/eval/baselines/depth_clustering.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/eval/baselines/euclidean.hpp"
+#include "lab/eval/baselines/euclidean.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "tools/eval/baselines/f3d.hpp"
+#include "lab/eval/baselines/f3d.hpp"
 
 #include <gtest/gtest.h>
 
+#include "lab/eval/baselines/peers.hpp"
 #include "tests/unit/eval_baselines/labels.hpp"
-#include "tools/eval/baselines/peers.hpp"
 
 namespace lookout::eval {
 namespace {

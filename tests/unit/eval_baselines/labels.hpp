@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "lab/eval/method.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
-#include "tools/eval/method.hpp"
 
 namespace lookout::eval::test {
 

@@ -1,4 +1,4 @@
-#include "tools/eval/baselines/point_tree.hpp"
+#include "lab/eval/baselines/point_tree.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "lab/eval/report_page.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/eval_report/made_up.hpp"
-#include "tools/eval/report_page.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -27,7 +27,7 @@ void ExpectNear(const json& value, double expected) {
 TEST(Page, IsTheBuiltTemplateWithTheResultsInPlace) {
   std::ostringstream page;
   WriteHtml(MadeUpResults(), page);
-  auto expected = support::ReadFile(support::kSources / "tools/eval/page/built/page.html");
+  auto expected = support::ReadFile(support::kSources / "lab/eval/page/built/page.html");
   const std::string place = "{{results}}";
   const auto at = expected.find(place);
   ASSERT_NE(at, std::string::npos);
@@ -36,7 +36,7 @@ TEST(Page, IsTheBuiltTemplateWithTheResultsInPlace) {
 
 // Only the script of the template runs, and nothing can be fetched.
 TEST(Page, HasAPolicyThatAllowsItsOwnScriptAlone) {
-  const auto page = support::ReadFile(support::kSources / "tools/eval/page/built/page.html");
+  const auto page = support::ReadFile(support::kSources / "lab/eval/page/built/page.html");
   EXPECT_NE(page.find("content=\"default-src 'none'; script-src 'sha256-"), std::string::npos);
   for (const auto* word : {"<link", "<img", "<iframe", "@import", " src=", "url("}) {
     EXPECT_EQ(page.substr(0, page.find("<script>")).find(word), std::string::npos) << word;

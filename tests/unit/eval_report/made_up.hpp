@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/eval/results.hpp"
+#include "lab/eval/results.hpp"
 
 namespace lookout::eval {
 

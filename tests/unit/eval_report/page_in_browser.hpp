@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "lab/eval/report_page.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/report_page.hpp"
 
 namespace lookout::eval {
 

@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 
+#include "lab/eval/track_autoferry.hpp"
+#include "lab/eval/track_command.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/track_autoferry.hpp"
-#include "tools/eval/track_command.hpp"
 
 namespace lookout::eval {
 namespace {

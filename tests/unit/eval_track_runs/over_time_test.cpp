@@ -1,14 +1,14 @@
-#include "tools/eval/over_time.hpp"
+#include "lab/eval/over_time.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <stdexcept>
 #include <vector>
 
+#include "lab/eval/run_plan.hpp"
+#include "lab/eval/scoring.hpp"
 #include "services/segmenter/core/segmenter.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/run_plan.hpp"
-#include "tools/eval/scoring.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/eval/track_labels.hpp"
+#include "lab/eval/track_labels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Whole runs: simulated, out of captures, and message by message.
-#include "tools/eval/track_run.hpp"
+#include "lab/eval/track_run.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -9,13 +9,13 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "lab/eval/baselines/nearest_neighbour.hpp"
+#include "lab/eval/track_sources.hpp"
+#include "lab/eval/track_tables.hpp"
+#include "lab/eval/track_targets.hpp"
+#include "lab/sim/scene_file.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/baselines/nearest_neighbour.hpp"
-#include "tools/eval/track_sources.hpp"
-#include "tools/eval/track_tables.hpp"
-#include "tools/eval/track_targets.hpp"
 #include "tools/replay/chain.hpp"
-#include "tools/sim/scene_file.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "lab/eval/track_geometry.hpp"
 #include "tests/unit/eval_tracks/track_cases.hpp"
-#include "tools/eval/track_geometry.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
+#include "lab/eval/track_assignment.hpp"
+#include "lab/eval/track_gospa.hpp"
 #include "tests/support/files.hpp"
-#include "tools/eval/track_assignment.hpp"
-#include "tools/eval/track_gospa.hpp"
 
 namespace lookout::eval {
 namespace {

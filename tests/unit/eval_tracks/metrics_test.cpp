@@ -1,8 +1,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "lab/eval/track_metrics.hpp"
 #include "tests/unit/eval_tracks/track_cases.hpp"
-#include "tools/eval/track_metrics.hpp"
 
 namespace lookout::eval {
 namespace {

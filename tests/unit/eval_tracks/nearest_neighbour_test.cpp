@@ -1,4 +1,4 @@
-#include "tools/eval/baselines/nearest_neighbour.hpp"
+#include "lab/eval/baselines/nearest_neighbour.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "tools/eval/track_geometry.hpp"
-#include "tools/eval/track_metrics.hpp"
+#include "lab/eval/track_geometry.hpp"
+#include "lab/eval/track_metrics.hpp"
 
 namespace lookout::eval {
 

@@ -1,4 +1,4 @@
-#include "tools/fit/boosting.hpp"
+#include "lab/fit/boosting.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/fit/isotonic.hpp"
+#include "lab/fit/isotonic.hpp"
 
 namespace lookout::fit {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/fit/fit_evidence.hpp"
+#include "lab/fit/fit_evidence.hpp"
 
 #include <algorithm>
 #include <cmath>

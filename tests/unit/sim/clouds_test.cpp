@@ -1,13 +1,13 @@
-#include "tools/sim/clouds.hpp"
+#include "lab/sim/clouds.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
 #include "common/core/angles.hpp"
+#include "lab/sim/birds.hpp"
+#include "lab/sim/breakers.hpp"
 #include "tests/unit/sim/effects_fixture.hpp"
-#include "tools/sim/birds.hpp"
-#include "tools/sim/breakers.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/sim/clutter.hpp"
+#include "lab/sim/clutter.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

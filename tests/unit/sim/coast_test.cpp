@@ -1,11 +1,11 @@
 // Land along a line: its edges, bends and outlines.
-#include "tools/sim/coast.hpp"
+#include "lab/sim/coast.hpp"
 
 #include <gtest/gtest.h>
 
 #include "common/config/text_config.hpp"
-#include "tools/sim/ground.hpp"
-#include "tools/sim/traffic.hpp"
+#include "lab/sim/ground.hpp"
+#include "lab/sim/traffic.hpp"
 
 namespace lookout::sim {
 namespace {

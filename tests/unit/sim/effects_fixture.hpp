@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
+#include "lab/sim/lidar.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/lidar.hpp"
 
 namespace lookout::sim {
 

@@ -10,8 +10,8 @@
 #include "common/core/angles.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/frames.hpp"
+#include "lab/sim/scene.hpp"
 #include "tests/unit/sim/effects_fixture.hpp"
-#include "tools/sim/scene.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -6,10 +6,10 @@
 #include <set>
 
 #include "common/config/text_config.hpp"
+#include "lab/sim/family.hpp"
+#include "lab/sim/scene_maker.hpp"
+#include "lab/sim/traffic.hpp"
 #include "tests/unit/sim/scenes.hpp"
-#include "tools/sim/family.hpp"
-#include "tools/sim/scene_maker.hpp"
-#include "tools/sim/traffic.hpp"
 
 namespace lookout::sim {
 namespace {

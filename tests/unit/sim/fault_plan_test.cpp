@@ -1,4 +1,4 @@
-#include "tools/sim/fault_plan.hpp"
+#include "lab/sim/fault_plan.hpp"
 
 #include <gtest/gtest.h>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "tools/sim/faulty_network.hpp"
+#include "lab/sim/faulty_network.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

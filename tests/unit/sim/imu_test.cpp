@@ -1,4 +1,4 @@
-#include "tools/sim/imu.hpp"
+#include "lab/sim/imu.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/sim/lidar_clock.hpp"
+#include "lab/sim/lidar_clock.hpp"
 
 #include <gtest/gtest.h>
 

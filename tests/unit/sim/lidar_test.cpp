@@ -1,4 +1,4 @@
-#include "tools/sim/lidar.hpp"
+#include "lab/sim/lidar.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

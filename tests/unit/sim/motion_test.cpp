@@ -1,4 +1,4 @@
-#include "tools/sim/motion.hpp"
+#include "lab/sim/motion.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // What the receiver, the compass, the attitude sensor and the IMU send, read by the navigator's own parser.
-#include "tools/sim/navigation.hpp"
+#include "lab/sim/navigation.hpp"
 
 #include <gtest/gtest.h>
 #include <map>

@@ -1,4 +1,4 @@
-#include "tools/sim/nmea.hpp"
+#include "lab/sim/nmea.hpp"
 
 #include <gtest/gtest.h>
 

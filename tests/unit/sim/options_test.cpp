@@ -1,4 +1,4 @@
-#include "tools/sim/options.hpp"
+#include "lab/sim/options.hpp"
 
 #include <gtest/gtest.h>
 #include <string>

@@ -1,4 +1,4 @@
-#include "tools/sim/random.hpp"
+#include "lab/sim/random.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-#include "tools/sim/ray_caster.hpp"
+#include "lab/sim/ray_caster.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
 
 #include "common/core/angles.hpp"
+#include "lab/sim/random.hpp"
 #include "tests/unit/sim/scenes.hpp"
-#include "tools/sim/random.hpp"
 
 namespace lookout::sim {
 namespace {

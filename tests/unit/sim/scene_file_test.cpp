@@ -1,4 +1,4 @@
-#include "tools/sim/scene_file.hpp"
+#include "lab/sim/scene_file.hpp"
 
 #include <unistd.h>
 
@@ -8,9 +8,9 @@
 
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "lab/sim/scene_maker.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/scenes.hpp"
-#include "tools/sim/scene_maker.hpp"
 
 namespace lookout::sim {
 namespace {

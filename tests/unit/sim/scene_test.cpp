@@ -1,4 +1,4 @@
-#include "tools/sim/scene.hpp"
+#include "lab/sim/scene.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "common/core/angles.hpp"
+#include "lab/sim/lidar.hpp"
+#include "lab/sim/traffic.hpp"
 #include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/lidar.hpp"
-#include "tools/sim/traffic.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "lab/sim/scene_file.hpp"
 #include "tests/support/files.hpp"
-#include "tools/sim/scene_file.hpp"
 
 namespace lookout::sim {
 

@@ -1,4 +1,4 @@
-#include "tools/sim/sea.hpp"
+#include "lab/sim/sea.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/config/boat.hpp"
-#include "tools/sim/scene.hpp"
+#include "lab/sim/scene.hpp"
 
 namespace lookout::sim {
 

@@ -1,4 +1,4 @@
-#include "tools/sim/simulation.hpp"
+#include "lab/sim/simulation.hpp"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "tools/sim/sinks.hpp"
+#include "lab/sim/sinks.hpp"
 
 #include <unistd.h>
 

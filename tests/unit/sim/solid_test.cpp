@@ -1,4 +1,4 @@
-#include "tools/sim/solid.hpp"
+#include "lab/sim/solid.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

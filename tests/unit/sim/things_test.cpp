@@ -1,4 +1,4 @@
-#include "tools/sim/things.hpp"
+#include "lab/sim/things.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "common/core/angles.hpp"
-#include "tools/sim/model.hpp"
-#include "tools/sim/traffic.hpp"
+#include "lab/sim/model.hpp"
+#include "lab/sim/traffic.hpp"
 
 namespace lookout::sim {
 namespace {

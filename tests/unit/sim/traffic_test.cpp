@@ -1,4 +1,4 @@
-#include "tools/sim/traffic.hpp"
+#include "lab/sim/traffic.hpp"
 
 #include <gtest/gtest.h>
 

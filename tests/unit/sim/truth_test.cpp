@@ -1,4 +1,4 @@
-#include "tools/sim/truth.hpp"
+#include "lab/sim/truth.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -13,11 +13,11 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
+#include "lab/sim/simulation.hpp"
 #include "lookout/sim_truth_t.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/simulation.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -1,7 +1,7 @@
 // The fourth step: components that belong to one obstacle by direction and distance of their centroids, the paper's "Algorithm 1".
 //
 // This is a reconstruction. The listing of Algorithm 1 is known from its text only; of three readings that were tried on synthetic scenes, the
-// connected components of the compatibility graph come nearest to the paper's results (tools/eval/README.md, "Measured"). Growing from a seed with a
+// connected components of the compatibility graph come nearest to the paper's results (lab/eval/README.md, "Measured"). Growing from a seed with a
 // moving centroid, and best pair first, cut a long shoreline into pieces.
 #pragma once
 

@@ -1,0 +1,189 @@
+// lookout-eval: how good the obstacles of a log are, against the truth of a simulation; and how good methods of segmentation are, on simulated
+// scenes or on recordings of others.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/boat_folder.hpp"
+#include "common/config/text_config.hpp"
+#include "common/core/printable.hpp"
+#include "common/runtime/version.hpp"
+#include "lab/eval/alert_command.hpp"
+#include "lab/eval/comparison_command.hpp"
+#include "lab/eval/log_command.hpp"
+#include "lab/eval/track_autoferry.hpp"
+#include "lab/eval/track_command.hpp"
+
+namespace {
+
+using namespace lookout;
+
+constexpr int kExitUsage = 2;
+constexpr double kSecondsOfTracks = 20.0;  // of each scene and seed
+constexpr double kSecondsOfAlerts = 60.0;
+
+struct Options {
+  eval::LogOptions log;
+  eval::ComparisonOptions comparison;
+  std::string autoferry_folder;  // empty = none
+  bool has_tracks = false;       // trackers on runs, in place of methods on scans
+  bool has_alerts = false;       // alerts on runs, in place of methods on scans
+  std::vector<std::filesystem::path> captures;
+  std::filesystem::path list_file;
+  std::optional<double> berth_seconds;
+  std::filesystem::path kept_folder;
+  std::size_t num_jobs = 1;
+};
+
+// Exits here for --help, --version and wrong lines.
+Options ParseOptions(int argc, char** argv) {
+  Options options;
+  auto& log = options.log;
+  auto& comparison = options.comparison;
+  comparison.command = fmt::format("lookout-eval {}", fmt::join(argv + 1, argv + argc, " "));
+  CLI::App app(
+      "Holds a log against the truth of lookout-sim (--in), or compares methods of segmentation on simulated scenes (--config with --scenes, "
+      "--captures, --sweep, --test or --points).",
+      "lookout-eval");
+  auto* in = app.add_option("--in", log.log_file, "lcm-log with OBSTACLES");
+  auto* truth = app.add_option("--truth", log.truth_folder, "folder that lookout-sim --truth wrote")->needs(in);
+  app.add_option("--boat", log.true_boat_folder,
+                 "folder with the boat.txtpb of the simulation, where the log was computed with another mounting of the lidar")
+      ->check(CLI::ExistingDirectory)
+      ->needs(truth);
+  app.add_option("--min-returns", log.min_num_returns, "an object with fewer returns in a scan does not count for recall")
+      ->check(CLI::Range(1, 1'000'000))
+      ->needs(in)
+      ->capture_default_str();
+
+  auto* config = app.add_option("--config", comparison.config_folder, "folder of the boat's *.txtpb files")
+                     ->check(CLI::ExistingDirectory)
+                     ->check(lookout::config::BoatFolderFault)
+                     ->excludes(in);
+  const auto needs_config = [config](CLI::Option* option) { return option->needs(config); };
+  needs_config(app.add_option("--scenes", comparison.scenes, "all, families (all of them), or names of scenes or .txtpb files"))->delimiter(',');
+  auto* weights = needs_config(app.add_option("--weights", comparison.weights_folder, "folder of evidence: without-FAMILY.txtpb and all.txtpb"))
+                      ->check(CLI::ExistingDirectory);
+  auto* left_out = app.add_option("--leave-out", comparison.left_out, "families, or names of some: ours with evidence fitted without them, too")
+                       ->delimiter(',')
+                       ->needs(weights);
+  weights->needs(left_out);
+  needs_config(app.add_option("--points", comparison.points, "scans out of files: .pcd, or .bin (KITTI) with a .label beside it"))
+      ->check(CLI::ExistingFile);
+  needs_config(
+      app.add_option("--captures", options.captures,
+                     "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb (with --alerts several)"));
+  auto* autoferry = app.add_option("--autoferry", options.autoferry_folder,
+                                   "trackers on the Autoferry data set: folder of its files (--config: of the boat's tracker)")
+                        ->check(CLI::ExistingDirectory);
+  needs_config(app.add_option("--seeds", comparison.num_seeds, "of each scene"))->check(CLI::Range(1, 100'000))->capture_default_str();
+  needs_config(app.add_option("--first-seed", comparison.first_seed,
+                              "the others follow it (default: 101 for methods and tests, 1 for --sweep and --tuning; the other range is refused)"));
+  needs_config(app.add_flag("--tuning", comparison.is_tuning, "methods on seeds of tuning; no file is written"));
+  auto* seconds = needs_config(app.add_option("--seconds", comparison.seconds, "of each scene and seed (with --tracks 20, with --alerts 60)"));
+  seconds->check(CLI::Range(0.3, 3600.0))->capture_default_str();
+  needs_config(app.add_option("--methods", comparison.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
+      ->delimiter(',');
+  needs_config(app.add_option("--sweep", comparison.sweeps, "FIELD=FROM:TO:STEP, a number of the segmenter's config (e1, e2, e3 for short)"));
+  needs_config(app.add_option("--test", comparison.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
+  needs_config(app.add_option("--csv", comparison.csv_folder, "write each table as a CSV file to this folder"));
+  needs_config(app.add_option("--html", comparison.html_file, "write the report as one page"));
+  needs_config(app.add_option("--lost", comparison.lost_file,
+                              "write each thing that was lost (with --tracks: missed, false, switch of each scan), as a row of a CSV file"));
+  auto* pictures =
+      needs_config(app.add_option("--pictures", comparison.pictures_folder, "draw the worst scans of each method and scene into this folder"));
+  app.add_option("--worst", comparison.num_worst, "pictures of each method and scene")
+      ->check(CLI::Range(1, 100))
+      ->needs(pictures)
+      ->capture_default_str();
+  app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written")
+      ->check(CLI::ExistingFile)
+      ->excludes(in);
+  needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));
+  auto* tracks = needs_config(app.add_flag("--tracks", options.has_tracks, "trackers on runs of all services, in place of methods on scans"));
+  auto* alerts = needs_config(app.add_flag("--alerts", options.has_alerts, "alerts on runs of all services, in place of methods on scans"));
+  app.add_option("--list", options.list_file, "with --alerts: write each alert and each danger, as a row of a CSV file")->needs(alerts);
+  app.add_option("--berth-seconds", options.berth_seconds,
+                 "with --alerts: of each seed of scenes in which the own boat lies still (default: --seconds)")
+      ->check(CLI::Range(1.0, 36'000.0))
+      ->needs(alerts);
+  app.add_option("--keep", options.kept_folder, "with --alerts: keep there what the tracker reads in simulated runs, and use it the next time")
+      ->needs(alerts);
+  app.add_option("--jobs", options.num_jobs, "with --alerts: runs at once; the figures are the same")
+      ->check(CLI::Range(1, 256))
+      ->needs(alerts)
+      ->capture_default_str();
+  for (const char* other : {"--lost", "--tracks"}) alerts->excludes(app.get_option(other));
+  for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--pictures"}) {
+    tracks->excludes(app.get_option(other));
+    alerts->excludes(app.get_option(other));
+    autoferry->excludes(app.get_option(other));
+  }
+  for (const char* other : {"--in", "--scenes", "--captures", "--tracks", "--alerts", "--csv", "--lost"}) autoferry->excludes(app.get_option(other));
+  app.set_version_flag("--version", "lookout-eval " + runtime::Version());
+  try {
+    app.parse(argc, argv);
+    if (log.log_file.empty() && comparison.config_folder.empty() && options.autoferry_folder.empty())
+      throw CLI::RequiredError("one of --in LOG, --config DIR, --autoferry DIR");
+    if (!options.has_alerts) {
+      if (options.captures.size() > 1) throw CLI::ValidationError("--captures", "several folders are for --alerts alone");
+      if (!options.captures.empty()) comparison.captures = options.captures.front();
+    }
+    if (!comparison.config_folder.empty() && !(options.has_alerts && !options.captures.empty())) {
+      const bool has_scans = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
+      if (!has_scans && comparison.tests.empty() && options.autoferry_folder.empty())
+        throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test, --autoferry");
+      if (comparison.scenes.empty() && !comparison.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
+      if (!has_scans && !comparison.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
+      if (comparison.methods.empty() &&
+          ((comparison.sweeps.empty() && comparison.tests.empty()) || !comparison.points.empty() || !comparison.captures.empty()))
+        comparison.methods = {"all"};
+    }
+    if (options.has_tracks && seconds->count() == 0) comparison.seconds = kSecondsOfTracks;
+    if (options.has_alerts && seconds->count() == 0) comparison.seconds = kSecondsOfAlerts;
+  } catch (const CLI::ParseError& error) {
+    std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
+  }
+  return options;
+}
+
+int EvaluateTracks(const eval::ComparisonOptions& options) {
+  const auto use = options.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
+  return eval::EvaluateTracks({options.config_folder, eval::PlanOf(options, use), options.is_tuning, options.captures, options.csv_folder,
+                               options.lost_file, options.is_forced, options.block_files});
+}
+
+int EvaluateAlerts(const Options& options) {
+  const auto& comparison = options.comparison;
+  const auto use = comparison.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
+  return eval::EvaluateAlerts({comparison.config_folder, eval::PlanOf(comparison, use), options.berth_seconds.value_or(comparison.seconds),
+                               comparison.is_tuning, options.captures, options.num_jobs, options.kept_folder, comparison.csv_folder,
+                               options.list_file, comparison.is_forced, comparison.block_files});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const auto options = ParseOptions(argc, argv);
+  if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
+  if (!options.autoferry_folder.empty()) {
+    return eval::EvaluateAutoferry({options.autoferry_folder, options.comparison.config_folder, options.comparison.block_files});
+  }
+  if (options.has_alerts) return EvaluateAlerts(options);
+  return options.has_tracks ? EvaluateTracks(options.comparison) : eval::CompareMethods(options.comparison);
+} catch (const std::invalid_argument& error) {
+  std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
+  return kExitUsage;
+} catch (const config::ConfigError& error) {
+  std::cerr << lookout::PrintableLines(error.what()) << '\n';
+  return kExitUsage;
+} catch (const std::exception& error) {
+  std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
+  return EXIT_FAILURE;
+}

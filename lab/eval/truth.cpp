@@ -1,0 +1,160 @@
+#include "lab/eval/truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "tools/import/csv_file.hpp"
+
+namespace lookout::eval {
+namespace {
+
+std::tuple<std::int64_t, int, int> OrderOf(const Truth::Return& made) { return {made.utime_us, made.ring, made.return_index}; }
+
+}  // namespace
+
+OutlineDistance DistanceToOutline(const Eigen::Vector2d& p_m, const Polygon& outline_m) {
+  double nearest_m2 = std::numeric_limits<double>::infinity();
+  bool is_inside = false;
+  for (std::size_t i = 0, previous = outline_m.size() - 1; i < outline_m.size(); previous = i++) {
+    const Eigen::Vector2d& a_m = outline_m[previous];
+    const Eigen::Vector2d& b_m = outline_m[i];
+    const Eigen::Vector2d edge_m = b_m - a_m;
+    const double length2_m2 = edge_m.squaredNorm();
+    const double share = length2_m2 > 0.0 ? std::clamp((p_m - a_m).dot(edge_m) / length2_m2, 0.0, 1.0) : 0.0;
+    nearest_m2 = std::min(nearest_m2, (p_m - a_m - share * edge_m).squaredNorm());
+    // A ray along +x crosses the edges that have one end above it and one not.
+    if ((a_m.y() > p_m.y()) != (b_m.y() > p_m.y())) {
+      const double crossing_m = a_m.x() + (p_m.y() - a_m.y()) / edge_m.y() * edge_m.x();
+      if (p_m.x() < crossing_m) is_inside = !is_inside;
+    }
+  }
+  const double edge_m = std::sqrt(nearest_m2);
+  return {edge_m, is_inside ? 0.0 : edge_m};
+}
+
+std::optional<Polygon> Outlines::At(int object_id, std::int64_t utime_us) const {
+  const auto object = by_object_.find(object_id);
+  if (object == by_object_.end()) return std::nullopt;
+  const auto& outlines = object->second;
+  const auto after = outlines.upper_bound(utime_us);
+  if (after == outlines.begin()) return after->second;
+  const auto before = std::prev(after);
+  if (after == outlines.end() || before->second.size() != after->second.size()) return before->second;
+  const double share = static_cast<double>(utime_us - before->first) / static_cast<double>(after->first - before->first);
+  Polygon outline_m;
+  for (std::size_t i = 0; i < before->second.size(); ++i) {
+    outline_m.emplace_back((1.0 - share) * before->second[i] + share * after->second[i]);
+  }
+  return outline_m;
+}
+
+std::optional<TruthSpan> Outlines::SpanOf(int object_id) const {
+  const auto object = by_object_.find(object_id);
+  if (object == by_object_.end()) return std::nullopt;
+  return TruthSpan{object->second.begin()->first, object->second.rbegin()->first};
+}
+
+Truth::Truth(const std::filesystem::path& folder) {
+  constexpr auto kMaxTime = std::numeric_limits<std::int64_t>::max();
+  constexpr auto kMinId = std::numeric_limits<int>::min();
+  constexpr auto kMaxId = std::numeric_limits<int>::max();
+  const auto whole = [](const importer::CsvFile& file, std::size_t column) { return static_cast<int>(file.WholeNumber(column, kMinId, kMaxId)); };
+
+  importer::CsvFile objects(folder / "objects.csv", {"object_id", "name", "kind", "is_moving"}, {"is_in_water"});
+  while (objects.Next()) {
+    const bool is_in_water = objects.Has(4) && whole(objects, 4) != 0;
+    objects_[whole(objects, 0)] = {std::string(objects.Text(1)), std::string(objects.Text(2)), whole(objects, 3) != 0, is_in_water};
+  }
+
+  importer::CsvFile outlines(folder / "outlines.csv", {"object_id", "utime_us", "latitude_deg", "longitude_deg"});
+  while (outlines.Next()) {
+    outlines_[whole(outlines, 0)][outlines.WholeNumber(1, 0, kMaxTime)].push_back({outlines.Number(2), outlines.Number(3)});
+  }
+  importer::CsvFile poses(folder / "pose.csv", {"utime_us", "latitude_deg", "longitude_deg", "heading_deg", "roll_deg", "pitch_deg"});
+  while (poses.Next()) {
+    poses_[poses.WholeNumber(0, 0, kMaxTime)] = {poses.Number(1), poses.Number(2), poses.Number(3), poses.Number(4), poses.Number(5)};
+  }
+  // Truths of older simulators end before the places.
+  importer::CsvFile returns(folder / "returns.csv", {"utime_us", "ring", "return_index", "object_id"}, {"x_m", "y_m", "z_m"});
+  const bool has_places = returns.Has(4) && returns.Has(5) && returns.Has(6);
+  while (returns.Next()) {
+    Return made{returns.WholeNumber(0, 0, kMaxTime), whole(returns, 1), whole(returns, 2), whole(returns, 3),
+                Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())};
+    if (has_places) made.p_lidar_m = Eigen::Vector3d(returns.Number(4), returns.Number(5), returns.Number(6)).cast<float>();
+    returns_.push_back(made);
+  }
+  std::ranges::sort(returns_, {}, OrderOf);
+}
+
+void Truth::AddReturns(std::vector<Return> returns) {
+  std::ranges::sort(returns, {}, OrderOf);
+  returns_.insert(returns_.end(), returns.begin(), returns.end());
+}
+
+void Truth::ForgetReturnsBefore(std::int64_t utime_us) {
+  while (!returns_.empty() && returns_.front().utime_us < utime_us) returns_.pop_front();
+}
+
+std::map<int, int> Truth::CountReturns(const TruthSpan& window) const {
+  std::map<int, int> counts;
+  for (auto made = std::ranges::lower_bound(returns_, window.begin_us, {}, &Return::utime_us);
+       made != returns_.end() && made->utime_us <= window.end_us; ++made) {
+    ++counts[made->object_id];
+  }
+  return counts;
+}
+
+const Truth::Return* Truth::Find(std::int64_t utime_us, int ring, int return_index) const {
+  for (auto made = std::ranges::lower_bound(returns_, utime_us - tolerance_us_, {}, &Return::utime_us);
+       made != returns_.end() && made->utime_us <= utime_us + tolerance_us_; ++made) {
+    if (made->ring == ring && made->return_index == return_index) return &*made;
+  }
+  return nullptr;
+}
+
+const Truth::Return* Truth::FindAlong(const Eigen::Vector3d& direction, double least_cosine, const TruthSpan& window, int ring,
+                                      int return_index) const {
+  const Return* nearest = nullptr;
+  double greatest_cosine = least_cosine;
+  for (auto made = std::ranges::lower_bound(returns_, window.begin_us, {}, &Return::utime_us);
+       made != returns_.end() && made->utime_us <= window.end_us; ++made) {
+    if (made->ring != ring || made->return_index != return_index) continue;
+    const Eigen::Vector3d p_m = made->p_lidar_m.cast<double>();
+    const double cosine = p_m.dot(direction) / p_m.norm();  // NaN without a place: not greater
+    if (!(cosine >= greatest_cosine)) continue;
+    greatest_cosine = cosine;
+    nearest = &*made;
+  }
+  return nearest;
+}
+
+std::optional<TruthSpan> Truth::Span() const {
+  std::optional<TruthSpan> span;
+  const auto add = [&span](std::int64_t begin_us, std::int64_t end_us) {
+    if (!span) span = TruthSpan{begin_us, end_us};
+    span = TruthSpan{std::min(span->begin_us, begin_us), std::max(span->end_us, end_us)};
+  };
+  if (!poses_.empty()) add(poses_.begin()->first, poses_.rbegin()->first);
+  if (!returns_.empty()) add(returns_.front().utime_us, returns_.back().utime_us);
+  return span;
+}
+
+Outlines Truth::OutlinesIn(const GeographicLib::LocalCartesian& map) const {
+  Outlines result;
+  for (const auto& [object_id, by_time] : outlines_) {
+    for (const auto& [utime_us, vertices] : by_time) {
+      Polygon outline_m;
+      for (const auto& vertex : vertices) {
+        Eigen::Vector3d p_m;
+        map.Forward(vertex.latitude_deg, vertex.longitude_deg, map.HeightOrigin(), p_m.x(), p_m.y(), p_m.z());
+        outline_m.emplace_back(p_m.head<2>());
+      }
+      result.Add(object_id, utime_us, std::move(outline_m));
+    }
+  }
+  return result;
+}
+
+}  // namespace lookout::eval

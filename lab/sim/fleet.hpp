@@ -1,0 +1,55 @@
+// What floats and what is built: boats, swimmers, buoys, markers, docks, piers and walls (sizes are those of common craft, rounded); and land: a bank
+// along an irregular waterline, rising ground behind it, and trees.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "lab/sim/random.hpp"
+#include "lab/sim/scene.hpp"
+
+namespace lookout::sim {
+
+/// Of an object. 0 where its kind has no such size.
+struct Size {
+  double length_m = 0.0;  // along x
+  double width_m = 0.0;   // along y; of round things the diameter
+  double height_m = 0.0;  // above the water
+  double reflectance = 0.0;
+};
+
+/// A kind of object and how to make one: always the same one, or one that a seed draws.
+struct KindOfObject {
+  std::string_view name;  // as in scene files, lower case
+  Size usual;             // 0 = the kind has no such size; of a drawn one the greatest that is drawn
+  bool is_in_water;       // a boat, swimmer, buoy or marker
+  bool is_afloat;         // rides the waves
+  /// Makes parts and outline. Null where `draw` is not.
+  void (*make)(const Size& size, SceneObject& object);
+  /// Draws parts, outline and waterline, and every size that is 0. One that stands for several kinds sets the object's kind.
+  void (*draw)(const Size& size, Random& random, SceneObject& object) = nullptr;
+};
+
+/// All kinds but shores and islands.
+std::span<const KindOfObject> Kinds();
+
+/// @param size  with what is not given: usual sizes, 0 of a drawn kind
+/// @return an object of this kind without id, name and way
+SceneObject MakeObject(const KindOfObject& kind, const Size& size, Random& random);
+
+/// @return radius of the waterline at a bearing
+using Waterline = std::function<double(double bearing_rad)>;
+
+struct Shore {
+  SceneObject object;  // frame: x north, y west, origin in the middle of the circle
+  Waterline waterline_m;
+};
+
+/// Land outward of the waterline.
+Shore MakeShore(const config::Scene::Land& land, Random& random);
+
+/// Land inward of the waterline: a bank round it and a hill. Trees only where their crowns stay over the land.
+SceneObject MakeIsland(const config::Scene::Land& land, Random& random);
+
+}  // namespace lookout::sim

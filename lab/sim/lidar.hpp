@@ -1,0 +1,122 @@
+// A VLP-16 that looks at a scene: data packets as the sensor makes them, with the truth about each return.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/config/boat.hpp"
+#include "common/core/angles.hpp"
+#include "common/core/utime.hpp"
+#include "lab/sim/clutter.hpp"
+#include "lab/sim/random.hpp"
+#include "lab/sim/ray_caster.hpp"
+#include "lab/sim/scene.hpp"
+#include "services/vlp16/core/model.hpp"
+#include "services/vlp16/core/packet_format.hpp"
+
+namespace lookout::sim {
+
+/// A block of the fastest head sweeps 0.8 deg and is not torn: it needs a place in the field of view.
+inline constexpr double kMinFieldOfViewRad = DegToRad(2.0);
+
+/// Facts of the device. Its return mode and its noise are effects of the scene.
+struct LidarParams {
+  vlp16::Model model = vlp16::Model::kVlp16;
+  Sector field_of_view;  // azimuths of the sensor in which its lasers fire; kMinFieldOfViewRad wide at least
+  double rotation_rpm = 600.0;
+  bool use_vertical_origin_offsets = false;  // as in vlp16.txtpb
+};
+
+/// What made a return that is not zero.
+struct TrueReturn {
+  Utime time;            // its laser's firing as the packet says it, nearest microsecond
+  int ring = 0;          // from the lowest beam up
+  int return_index = 0;  // place in its pair of blocks: dual 0 last, 1 strongest; else 0
+  int object_id = kNoObject;
+  ReturnReason reason = ReturnReason::kObject;
+  int slot = 0;  // in its packet: block x 32 + sequence in the block x 16 + laser id
+  /// Lidar frame, where the beam met what gave the return, without noise. At a mixed edge between the surfaces, along the axis of the beam.
+  Eigen::Vector3d p_lidar_m = Eigen::Vector3d::Zero();
+};
+
+struct LidarPacket {
+  Utime stamp;     // as in the payload: first shot, whole microseconds
+  Utime end_time;  // last shot
+  std::array<std::uint8_t, vlp16::format::kDataPacketSizeBytes> payload{};
+  std::vector<TrueReturn> returns;
+};
+
+class Lidar {
+ public:
+  /// @param scene  outlives this
+  /// @param start  of the first shot; the scene's time 0
+  Lidar(const Scene& scene, const config::BoatFacts& boat, const LidarParams& params, Utime start, std::uint64_t seed);
+
+  Lidar(const Lidar&) = delete;
+  Lidar& operator=(const Lidar&) = delete;
+
+  LidarPacket Next();
+
+  /// Azimuth of the rotor, clockwise, not wrapped. It turns at the mean rate with slow variations about it, so errors do not add up.
+  double AzimuthAt(double time_s) const;
+
+ private:
+  struct Measurement {
+    std::uint16_t range_2mm = 0;  // 0 = no return
+    std::uint8_t reflectivity = 0;
+    int object_id = kNoObject;
+    ReturnReason reason = ReturnReason::kStray;
+    double true_range_m = 0.0;
+    double power = 0.0;  // relative to that of a white surface at 1 m
+  };
+  struct Shot {
+    Measurement strongest;
+    Measurement last;
+  };
+  // Echoes of one shot that were seen.
+  struct Seen {
+    static constexpr int kMaxCount = 8;
+    int count = 0;
+    std::array<Measurement, kMaxCount> measurement;
+
+    void Add(const Measurement& seen) {
+      if (seen.range_2mm != 0) measurement[static_cast<std::size_t>(count++)] = seen;
+    }
+  };
+
+  struct RayPair {  // one ray in two frames
+    Ray vessel;
+    Ray map;
+  };
+  RayPair RayOf(double origin_height_m, double azimuth_rad, double elevation_rad, const Eigen::Isometry3d& T_map_vessel) const;
+  Shot Fire(const RayPair& ray, double time_s);
+  Echoes Meet(const RayPair& ray, double max_range_m, double time_s);
+  void MeetWater(const Ray& ray, double max_range_m, Seen& seen);
+  Shot Choose(const Seen& seen) const;
+  bool FiresFrom(std::int64_t sequence) const;
+  Measurement Measure(const Echo& echo);
+  Measurement ToMeasurement(double range_m, double brightness, int object_id, ReturnReason reason);
+  Measurement Stray(double max_range_m);
+
+  LidarParams params_;
+  const Effects& effects_;
+  const Sea& sea_;
+  const vlp16::Beams& beams_;
+  OwnMotion own_motion_;
+  double reference_point_above_water_m_;
+  Eigen::Isometry3d T_vessel_lidar_;
+  std::vector<SceneObject> own_hull_;
+  RayCaster own_caster_;  // vessel frame
+  BeamWidth beam_width_;
+  RayCaster caster_;  // map frame
+  Clutter clutter_;
+  Random random_;
+  std::vector<Wave> rotor_rad_;
+  double rotor_phase_rad_ = 0.0;
+  double rotor_rate_radps_ = 0.0;
+  Utime start_;
+  std::int64_t next_sequence_ = 0;  // to be fired, in sequence periods since the start
+};
+
+}  // namespace lookout::sim

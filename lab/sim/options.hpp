@@ -1,0 +1,35 @@
+// The command line of lookout-sim.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "lab/sim/faulty_network.hpp"
+#include "lab/sim/simulation.hpp"
+
+namespace lookout::sim {
+
+struct Options {
+  std::filesystem::path config_folder;
+  std::string scene;  // name or path, as in FindScene
+  double seconds = 0.0;
+  std::filesystem::path pcap_file;     // empty: to udp_host
+  std::string udp_host;                // empty: to pcap_file
+  std::filesystem::path truth_folder;  // empty: none
+  bool force = false;                  // existing files are replaced
+  // Of a capture. 2026-06-15 14:10:00 UTC: any date serves, as long as it is always the same.
+  std::int64_t start_utime_us = 1'781'532'600'000'000;
+  double speed = 1.0;           // to udp_host, times real time; 0 = without waiting
+  SimulationParams simulation;  // seed, faults, and what of lidar and navigation no config file says
+  Effects effects;              // what is set here overrides the scene's
+  FaultParams network;
+};
+
+/// Exits here for --help, --version, --list-scenes and wrong lines.
+///
+/// @throws std::invalid_argument  for a wrong --fault
+/// @throws config::ConfigError    for a wrong scene file, with --list-scenes
+Options ParseOptions(int argc, char** argv);
+
+}  // namespace lookout::sim

@@ -1,0 +1,86 @@
+#include "lab/sim/simulation.hpp"
+
+#include <algorithm>
+
+#include "common/config/text_config.hpp"
+#include "config/schema/navigator.pb.h"
+#include "config/schema/vlp16.pb.h"
+#include "services/vlp16/core/packet_format.hpp"
+
+namespace lookout::sim {
+namespace {
+
+using namespace std::chrono_literals;
+namespace format = vlp16::format;
+
+constexpr std::uint64_t kNetworkStream = 5;
+
+// From the last shot of a packet to its arrival: sending takes 100 us at 100 Mbit/s, and the kernel some more.
+constexpr std::chrono::microseconds kDataLatency = 120us;
+constexpr double kDataJitterUs = 60.0;
+
+}  // namespace
+
+SimulationParams ParamsOfConfig(const std::filesystem::path& config_folder, SimulationParams params) {
+  const auto vlp16 = config::Load<config::Vlp16>(config_folder, "vlp16.txtpb");
+  const auto navigator = config::Load<config::Navigator>(config_folder, "navigator.txtpb");
+  params.lidar.use_vertical_origin_offsets = vlp16.use_vertical_origin_offsets();
+  params.navigation.nmea_port = navigator.nmea_port();
+  params.navigation.position_port = vlp16.position_port();
+  params.navigation.heading_offset_deg = navigator.heading_offset_deg();
+  params.navigation.pitch_offset_deg = navigator.pitch_offset_deg();
+  params.navigation.roll_offset_deg = navigator.roll_offset_deg();
+  params.data_port = vlp16.data_port();
+  return params;
+}
+
+Simulation::Simulation(const Scene& scene, const config::BoatFacts& boat, const SimulationParams& params, TruthWriter* truth)
+    : params_(params),
+      truth_(truth),
+      plan_(params.faults, params.start),
+      clock_(plan_),
+      lidar_(scene, boat, params.lidar, params.start, params.seed),
+      navigation_(scene, boat, params.navigation, plan_, params.start, params.seed),
+      random_(params.seed, kNetworkStream) {}
+
+void Simulation::Fill() {
+  while (!lidar_datagram_) {
+    LidarPacket packet = lidar_.Next();
+    const auto jitter = std::chrono::microseconds(static_cast<std::int64_t>(kDataJitterUs * random_.Uniform()));
+    const Utime arrival = packet.end_time + kDataLatency + jitter;
+    const bool has_ended = arrival > params_.start + params_.duration;
+    const bool is_sent = clock_.IsOn(packet.stamp) && clock_.IsOn(packet.end_time);
+    // In place of the right stamp.
+    if (is_sent) WriteU32LittleEndian(packet.payload, format::kStampOffset, clock_.StampUs(packet.stamp));
+    if (truth_ != nullptr && !has_ended) {
+      if (is_sent) truth_->AddPacket(packet);
+      truth_->AdvanceTo(packet.end_time);
+    }
+    if (params_.on_packet && is_sent && !has_ended) params_.on_packet(packet);
+    // Past the end one that is not sent is as good as one that is: it is not given to anybody.
+    if (is_sent || has_ended) lidar_datagram_ = Datagram{arrival, params_.data_port, {packet.payload.begin(), packet.payload.end()}};
+  }
+  // Whatever is measured later also arrives later.
+  while (navigation_.next_time() <= lidar_datagram_->time) {
+    for (auto& datagram : navigation_.Next()) {
+      const auto place = std::ranges::upper_bound(navigation_datagrams_, datagram.time, {}, &Datagram::time);
+      navigation_datagrams_.insert(place, std::move(datagram));
+    }
+  }
+}
+
+std::optional<Datagram> Simulation::Next() {
+  Fill();
+  Datagram next;
+  if (!navigation_datagrams_.empty() && navigation_datagrams_.front().time < lidar_datagram_->time) {
+    next = std::move(navigation_datagrams_.front());
+    navigation_datagrams_.erase(navigation_datagrams_.begin());
+  } else {
+    next = std::move(*lidar_datagram_);
+    lidar_datagram_.reset();
+  }
+  if (next.time > params_.start + params_.duration) return std::nullopt;
+  return next;
+}
+
+}  // namespace lookout::sim
