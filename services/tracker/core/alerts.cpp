@@ -117,6 +117,7 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::v
       for (auto& latch : entry.causes) latch.ForgetLooks();
       entry.warning.ForgetLooks();
       entry.untold.ForgetLooks();
+      if (entry.lost) entry.lost->since = time;
     }
   }
   newest_ = time;
@@ -161,9 +162,11 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::v
 
 void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole, const Evidence& evidence, const Surroundings& around) {
   LookFor(entry, thing, time, evidence, around);
+  const bool is_lost_for_long = entry.lost && ToSeconds(time - entry.lost->since) >= kHiddenS;
   // It may be hidden, and is not abaft yet.
-  const bool may_be_there =
-      entry.lost && entry.lost->is_hidden && ToSeconds(time - entry.lost->since) < kHiddenS && !IsAbaft(entry.alert->bearing_rad);
+  const bool may_be_there = entry.lost && entry.lost->is_hidden && !is_lost_for_long && !IsAbaft(entry.alert->bearing_rad);
+  // A packet that is lost hides a part of the water, and not the same one for so long.
+  const bool counts_off = is_whole || is_lost_for_long;
   // It opens abaft: there is nothing to wait for.
   const bool has_passed =
       entry.HasAlert() && IsAbaft(entry.alert->bearing_rad) && evidence[kApproach] != nullptr && evidence[kApproach]->tcpa_s == 0.0;
@@ -174,12 +177,12 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
     const double probability = evidence[i] == nullptr ? 0.0 : evidence[i]->probability;
     const bool says_on = probability >= params_.raise_probability;
     const bool says_off = !(probability >= params_.clear_probability) && !may_be_there;
-    entry.causes[i].Update(time, is_whole, says_on, says_off, clear_s);
+    entry.causes[i].Update(time, counts_off, says_on, says_off, clear_s);
     const bool is_grave = evidence[i] != nullptr && evidence[i]->is_grave;
     says_warning = says_warning || (says_on && is_grave);
     says_no_warning = says_no_warning && !(is_grave && probability >= params_.clear_probability);
   }
-  entry.warning.Update(time, is_whole, says_warning, says_no_warning, clear_s);
+  entry.warning.Update(time, counts_off, says_warning, says_no_warning, clear_s);
   Advance(entry, thing, time);
   if (!entry.HasAlert() || !entry.alert->Holds()) return;
   Tell(entry, evidence);
@@ -201,7 +204,8 @@ void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidenc
     if (is_there) entry.lost.reset();
     if (!is_there && !entry.lost) entry.lost = Lost{time, entry.was_likely};
   }
-  const bool is_lost = entry.lost || (thing == kUnnamed && !is_told && time - alert.seen > kShownFor);
+  if (thing == kUnnamed && !is_told && !entry.lost && time - alert.seen > kShownFor) entry.lost = Lost{time, false};
+  const bool is_lost = entry.lost.has_value();
   if (is_lost) alert.nearest_track = kLandTrack;
   if (is_lost || !is_told) {
     TellFromPlace(alert, around.own);
@@ -341,10 +345,10 @@ void Alerts::Advance(Entry& entry, std::int64_t thing, Utime time) {
   if (alert.state == AlertState::kCleared) return;
   if (!entry.IsRaised()) {
     if (alert.Holds()) {
-      alert.end = entry.lost ? (entry.lost->is_hidden && !IsAbaft(alert.bearing_rad) ? AlertEnd::kHidden
-                                : IsAbaft(alert.bearing_rad)                         ? AlertEnd::kPassed
-                                                                                     : AlertEnd::kGone)
-                             : (IsAbaft(alert.bearing_rad) ? AlertEnd::kPassed : AlertEnd::kClear);
+      alert.end = entry.lost && IsOfTrack(thing) ? (entry.lost->is_hidden && !IsAbaft(alert.bearing_rad) ? AlertEnd::kHidden
+                                                    : IsAbaft(alert.bearing_rad)                         ? AlertEnd::kPassed
+                                                                                                         : AlertEnd::kGone)
+                                                 : (IsAbaft(alert.bearing_rad) ? AlertEnd::kPassed : AlertEnd::kClear);
       alert.is_in_zone = alert.comes_near = false;
       entry.was_acknowledged = alert.state == AlertState::kAcknowledged;
     }

@@ -83,7 +83,7 @@ struct Surroundings {
 /// scans older than 1 s count neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
 ///
 /// A thing whose track is gone is lost. Its alert stays where it was seen last: until clear_s where it was looked for and is not there, or is abaft
-/// by now; else, since it may be hidden, for kHiddenS. What comes up again within kSameS, by its name or beside where it was last, is the same alert.
+/// by now; else, since it may be hidden, for kHiddenS. After that, scans that are not whole clear it, too. What comes up again within kSameS, by its name or beside where it was last, is the same alert.
 ///
 /// Nothing is in the guard zone unnoticed because it is named now so, now otherwise: what is in it and has no alert that holds counts for the alert
 /// of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it holds.

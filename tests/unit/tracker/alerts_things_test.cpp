@@ -171,6 +171,38 @@ TEST_F(AlertsOfTracks, StayForTenSecondsOfWhatMayBeHidden) {
   EXPECT_TRUE(alerts_.alerts().empty());
 }
 
+// Each scan lacked a packet, so none cleared anything: the alert of a boat that was gone stood for good.
+TEST_F(AlertsOfTracks, EndOfWhatIsNotSeenAnyMoreThoughNoScanIsWhole) {
+  Show({Known(7)});
+  Scans(5, {At(7, 0.0, 20.0)});
+  Show({Known(7, TrackStatus::kLost, 0.05)});
+  Scan({}, false);
+  Show();
+  Scans(100, {}, false);
+  EXPECT_EQ(Only().state, AlertState::kActive) << "it may be where the packets were lost";
+  Scans(35, {}, false);
+  EXPECT_TRUE(alerts_.alerts().empty());
+
+  auto unnamed = Zone(kUnnamed);
+  unnamed.place_map_m = {1.0, 7.0};
+  Scans(5, {unnamed}, false);
+  ASSERT_EQ(Only().thing, kUnnamed);
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(140, {}, false);
+  EXPECT_TRUE(alerts_.alerts().empty());
+}
+
+// Nobody looked for 20 s: it may be seen again now.
+TEST_F(AlertsOfTracks, OfWhatMayBeHiddenOutliveAGap) {
+  Show({Known(7)});
+  Scans(5, {At(7, 0.0, 20.0)});
+  Show();
+  Scans(5, {});
+  time_ += std::chrono::seconds(20);
+  Scans(50, {});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+}
+
 TEST_F(AlertsOfTracks, EndSoonOfWhatIsGoneOrAbaft) {
   Show({Known(7)});
   Scans(5, {At(7, 0.0, 20.0)});
