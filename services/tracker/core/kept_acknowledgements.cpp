@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "common/core/angles.hpp"
@@ -62,23 +64,54 @@ std::vector<KeptAcknowledgements::Kept>::iterator KeptAcknowledgements::FindSame
   return same;
 }
 
+// How far an active alert is from where it is expected; nullopt: it is of something else, or graver, or was there before.
+std::optional<double> KeptAcknowledgements::DistanceTo(const Kept& kept, Utime time, const Alert& alert, const Track* track) {
+  if (alert.level > kept.level || alert.raised <= kept.time) return std::nullopt;
+  if (kept.alert_id.value_or(alert.id) != alert.id) return std::nullopt;
+  if (!kept.position_m) return alert.thing == kLandTrack && kept.IsSameLand(alert) ? std::optional(0.0) : std::nullopt;
+  if (alert.thing == kLandTrack || track == nullptr) return std::nullopt;
+  const double distance_m = (track->position_m - kept.ExpectedAt(time)).norm();
+  return distance_m <= kSamePlaceM ? std::optional(distance_m) : std::nullopt;
+}
+
 std::vector<Acknowledgement> KeptAcknowledgements::Take(Utime time, const Datum& datum, std::span<const Alert> alerts,
                                                         std::span<const Track> tracks) {
   Forget(time);
-  std::vector<Acknowledgement> taken;
-  for (const auto& alert : alerts) {
-    if (alert.state != AlertState::kActive) continue;
-    const auto* track = FindTrack(tracks, alert.nearest_track);
-    const auto same = std::ranges::find_if(kept_, [&](const Kept& kept) {
-      if (alert.level > kept.level || alert.raised <= kept.time || !datum.IsSameAs(kept.datum)) return false;
-      if (alert.thing == kLandTrack || track == nullptr) return alert.thing == kLandTrack && !kept.position_m && kept.IsSameLand(alert);
-      return kept.position_m && (track->position_m - kept.ExpectedAt(time)).norm() <= kSamePlaceM;
-    });
-    if (same == kept_.end()) continue;
-    taken.push_back({time, "tracker", alert.id, alert.raised});
-    // As a caution it may be one that is just seen, and rises.
-    if (alert.level == same->level) kept_.erase(same);
+  struct Pair {
+    double distance_m;
+    std::size_t kept;
+    std::size_t alert;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < alerts.size(); ++i) {
+    if (kept_.empty() || alerts[i].state != AlertState::kActive) continue;
+    const auto* track = FindTrack(tracks, alerts[i].nearest_track);
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+      const auto distance_m = datum.IsSameAs(kept_[k].datum) ? DistanceTo(kept_[k], time, alerts[i], track) : std::nullopt;
+      if (distance_m) pairs.push_back({*distance_m, k, i});
+    }
   }
+  std::ranges::sort(pairs, {}, [](const Pair& pair) { return std::tuple(pair.distance_m, pair.kept, pair.alert); });
+  std::vector<Acknowledgement> taken;
+  std::vector<bool> is_used(kept_.size(), false);
+  std::vector<bool> is_taken(alerts.size(), false);
+  std::vector<bool> is_done(kept_.size(), false);
+  for (const auto& pair : pairs) {
+    if (is_used[pair.kept] || is_taken[pair.alert]) continue;
+    is_used[pair.kept] = is_taken[pair.alert] = true;
+    const auto& alert = alerts[pair.alert];
+    auto& kept = kept_[pair.kept];
+    taken.push_back({time, "tracker", alert.id, alert.raised});
+    kept.alert_id = alert.id;
+    // As a caution it may be one that is just seen, and rises.
+    is_done[pair.kept] = alert.level == kept.level;
+  }
+  std::vector<Kept> left;
+  left.reserve(kept_.size());
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    if (!is_done[k]) left.push_back(kept_[k]);
+  }
+  kept_ = std::move(left);
   return taken;
 }
 

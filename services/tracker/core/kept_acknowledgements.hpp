@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,7 +29,8 @@ class KeptAcknowledgements {
   /// yet. What is kept of the same thing, the nearest, is replaced.
   void Keep(Utime time, const Datum& datum, std::span<const Alert> alerts, std::span<const Track> tracks);
 
-  /// With a scan: acknowledgements for the alerts that came up since. Each that is kept counts once at its level, and on the map of its datum alone.
+  /// With a scan: acknowledgements for the alerts that came up since. Each that is kept is of one alert, the nearest that came up: once at its level,
+  /// and before that as the caution that the alert began with. It counts on the map of its datum alone.
   std::vector<Acknowledgement> Take(Utime time, const Datum& datum, std::span<const Alert> alerts, std::span<const Track> tracks);
 
  private:
@@ -40,6 +42,7 @@ class KeptAcknowledgements {
     Eigen::Vector2d velocity_mps;
     double distance_m = kNan;  // of land, as the alert told it
     double bearing_rad = kNan;
+    std::optional<std::int64_t> alert_id = std::nullopt;  // that it is of by now
 
     bool IsSameLand(const Alert& alert) const;
     // Precondition: not of land.
@@ -47,6 +50,7 @@ class KeptAcknowledgements {
   };
 
   void Forget(Utime time);
+  static std::optional<double> DistanceTo(const Kept& kept, Utime time, const Alert& alert, const Track* track);
   static std::vector<Kept>::iterator FindSame(std::vector<Kept>& older, const Kept& kept);
 
   std::vector<Kept> kept_;

@@ -123,6 +123,18 @@ TEST_F(KeptAcknowledgementsTest, OfTheSameThingReplaceTheOlder) {
   EXPECT_EQ(Take({TrackAt(9, 16.0)}, kHere, AlertLevel::kCaution), 0U);
 }
 
+// A warning of one buoy was acknowledged; all cautions within 5 m of it were for 10 s, and one of them was a kayak.
+TEST_F(KeptAcknowledgementsTest, AreOfOneThingTheNearest) {
+  Keep({TrackAt(1, 20.0)});
+  time_ += seconds(1);
+  EXPECT_EQ(Take({TrackAt(9, 16.0), TrackAt(8, 20.5)}, kHere, AlertLevel::kCaution), 1U);
+  time_ += seconds(1);
+  EXPECT_EQ(Take({TrackAt(9, 16.0)}, kHere, AlertLevel::kCaution), 0U);
+  EXPECT_EQ(Take({TrackAt(9, 16.0)}), 0U) << "a warning neither";
+  EXPECT_EQ(Take({TrackAt(8, 20.5)}), 1U) << "it was just seen, and is a warning again";
+  EXPECT_EQ(Take({TrackAt(8, 20.5)}), 0U);
+}
+
 // Two buoys 3 m apart, of which the second time only one was acknowledged again so far.
 TEST_F(KeptAcknowledgementsTest, OfNeighboursReplaceOneEachTheNearest) {
   Keep({TrackAt(1, 20.0), TrackAt(2, 23.0)});
