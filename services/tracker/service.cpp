@@ -310,6 +310,7 @@ HealthReport Service::Report() const {
   HealthReport report;
   if (memory_) report.counters = memory_->tracker.counters();
   report.counters.push_back({"alerts", num_alerts_});
+  report.counters.push_back({"newcomers_over_limit", memory_ ? memory_->look_out.num_newcomers_over_limit() : 0});
   for (const auto& counter : gatherer_.counters()) report.counters.push_back(counter);
   auto counts = counts_;
   const auto add_parts = [&counts](const auto& assembler) {

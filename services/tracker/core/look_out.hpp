@@ -61,6 +61,7 @@ class LookOut {
   GuardZoneParams WholeZone() const;
   std::int64_t sounding() const { return sounding_; }
   std::optional<Utime> silenced_until() const { return sound_.silenced_until(); }
+  std::int64_t num_newcomers_over_limit() const { return newcomers_.num_over_limit(); }
 
  private:
   LookOutParams params_;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,9 +20,16 @@ class Newcomers {
   /// A boat in waves loses a low thing for some scans.
   static constexpr std::chrono::milliseconds kKeptFor{400};
 
-  /// One scan.
-  /// @return [places] seconds since something was seen there first
+  /// In a downpour the nearest of a scan are followed, and of those known before the ones that were seen last, then the nearest.
+  static constexpr std::size_t kMostPlaces = 200;
+  static constexpr std::size_t kMostKnown = 400;
+
+  /// One scan. Cost: at most kMostPlaces x kMostKnown distances, sorted.
+  /// @return [places] seconds since something was seen there first; 0 of what is not followed
   std::vector<double> Update(Utime time, std::span<const DangerPlace> places);
+
+  /// Places of scans, and known ones, that were dropped because there were too many.
+  std::int64_t num_over_limit() const { return num_over_limit_; }
 
  private:
   struct Known {
@@ -28,7 +37,10 @@ class Newcomers {
     Utime first;
     Utime seen;
   };
+  void ForgetBeyondLimit();
+
   std::vector<Known> known_;
+  std::int64_t num_over_limit_ = 0;
 };
 
 }  // namespace lookout::tracker
