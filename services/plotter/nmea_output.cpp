@@ -55,7 +55,13 @@ void NmeaOutput::FinishTargets(const Told& told) {
 void NmeaOutput::SendNotices(const Told& told) {
   if (params().alerts == SentAlerts::kNone) return;
   constexpr int kSequences = 10;
-  for (const auto& [notice, revision, is_repeat] : notices_.Take(told.notices, told.passed)) {
+  // ALR has no word for sound, and ALF one for silence.
+  std::vector<Notice> notices(told.notices.begin(), told.notices.end());
+  for (auto& notice : notices) {
+    const bool is_said = params().alerts == SentAlerts::kAlf && notice.sound == Sound::kSilenced;
+    if (!is_said) notice.sound = Sound::kQuiet;
+  }
+  for (const auto& [notice, revision, is_repeat] : notices_.Take(notices, told.passed)) {
     // Repeats give way to all else, and on a slow port one of them a second is enough.
     if (is_repeat && room_bytes() < kAmpleRoomBytes && repeat_sent_ && told.passed - *repeat_sent_ < kSlowRepeat) continue;
     std::string lines;

@@ -19,6 +19,8 @@ constexpr auto kMostApart = 2s;
 // An acknowledgement that was sent takes effect with the next scan: the same one again is none.
 constexpr auto kAcknowledgedFor = 1s;
 constexpr auto kNoticePeriod = 100ms;
+// A caution of the plotter's own, as the tracker's.
+constexpr auto kSoundsOnce = 1s;
 
 bool Holds(const Notice& notice) { return notice.state == NoticeState::kActive || notice.state == NoticeState::kAcknowledged; }
 
@@ -149,7 +151,12 @@ std::optional<Notice> Service::OwnNotice() const {
   } else {
     return std::nullopt;
   }
-  return own_notice_ && own_notice_->cause == notice.cause ? own_notice_ : notice;
+  if (own_notice_ && own_notice_->cause == notice.cause) notice = *own_notice_;
+  // One sounds: while ALERTS come theirs.
+  const bool is_new = *now_ - notice.raised < kSoundsOnce && *now_ >= notice.raised;
+  const bool sounds = notice.level == Level::kWarning || (is_new && std::ranges::find(alerts_, Sound::kSounds, &Notice::sound) == alerts_.end());
+  notice.sound = sounds ? Sound::kSounds : Sound::kQuiet;
+  return notice;
 }
 
 void Service::ComposeNotices() {

@@ -29,7 +29,11 @@ void SignalKOutput::EndTargets(const Told& told) {
 }
 
 void SignalKOutput::SendNotices(const Told& told) {
-  for (const auto& [notice, revision, is_repeat] : notices_.Take(told.notices, told.passed)) {
+  std::vector<Notice> notices(told.notices.begin(), told.notices.end());
+  for (auto& notice : notices) {
+    if (notice.sound == Sound::kSilenced) notice.sound = Sound::kQuiet;
+  }
+  for (const auto& [notice, revision, is_repeat] : notices_.Take(notices, told.passed)) {
     const auto key = RaisedKeyOf(notice);
     const auto [raised, is_new] = raised_.try_emplace(key, Raised{NoticeWord(notice), notice});
     const Notice& last = raised->second.notice;
@@ -38,8 +42,10 @@ void SignalKOutput::SendNotices(const Told& told) {
       ended.state = NoticeState::kCleared;
       SendSurely(NoticeDelta(ended, raised->second.word, told.host_time), raised->second.word);
       raised->second.word = NoticeWord(notice);
+      raised->second.told_quiet.reset();
     }
     raised->second.notice = notice;
+    if (notice.sound == Sound::kQuiet) raised->second.told_quiet = told.passed;
     SendSurely(NoticeDelta(notice, raised->second.word, told.host_time), raised->second.word);
   }
   // What ended is told again for a while, under its own word.
@@ -76,8 +82,12 @@ std::vector<std::int64_t> SignalKOutput::Read(const std::string& message, const 
     if (notice.id == 0 || raised == raised_.end() || raised->second.notice.state != notice.state) continue;
     const bool is_active = notice.state == NoticeState::kActive;
     if (!is_active && notice.state != NoticeState::kRectified) continue;
+    // So did what is active and not the one that sounds.
+    const auto& told_quiet = raised->second.told_quiet;
+    const bool is_loud = raised->second.notice.sound == Sound::kSounds && (!told_quiet || told.passed - *told_quiet >= kEchoedWithin);
     const bool is_acknowledged = std::ranges::any_of(read.echoes, [&](const NoticeEcho& echo) {
-      return echo.word == raised->second.word && (echo.is_acknowledged || (is_active && echo.is_quiet));
+      const bool is_quiet = echo.is_quiet && (is_loud || !echo.is_raised);
+      return echo.word == raised->second.word && (echo.is_acknowledged || (is_active && is_quiet));
     });
     if (is_acknowledged) keys.push_back(KeyOf(notice));
   }

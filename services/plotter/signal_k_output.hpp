@@ -1,8 +1,10 @@
 // Signal K for one receiver.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -37,7 +39,10 @@ class SignalKOutput : public Output {
   struct Raised {
     std::string word;
     Notice notice;
+    std::optional<std::chrono::microseconds> told_quiet = std::nullopt;  // under this word as active without sound: when last
   };
+  // What was sent has come back by then.
+  static constexpr std::chrono::seconds kEchoedWithin{3};
   static constexpr std::size_t kMostRaised = 1000;
   std::map<RaisedKey, Raised> raised_;
   std::set<std::string> ended_words_;  // of processes before this one

@@ -8,6 +8,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/pose.hpp"
+#include "common/messages/alert_sound.hpp"
 
 namespace lookout::plotter {
 
@@ -36,6 +37,17 @@ bool AreNumbersGood(const track_t& track) {
 // Ids of the watch run from -1 down.
 Cause CauseOf(const alert_t& alert) {
   return alert.cause == alert_t::CAUSE_WATCH && alert.id > 0 ? Cause::kPartUnseen : static_cast<Cause>(alert.cause);
+}
+
+Sound SoundOf(const alerts_t& message, const alert_t& alert) {
+  switch (messages::SoundOf(message, alert)) {
+    case messages::AlertSound::kSounds:
+      return Sound::kSounds;
+    case messages::AlertSound::kSilenced:
+      return Sound::kSilenced;
+    default:
+      return Sound::kQuiet;
+  }
 }
 
 std::string_view KindText(std::int32_t kind) {
@@ -130,6 +142,7 @@ std::variant<std::vector<Notice>, Fault> ToNotices(const alerts_t& message) {
                        .track_id = alert.track_id,
                        .raised = *raised,
                        .changed = *changed,
+                       .sound = SoundOf(message, alert),
                        .text = alert.text});
   }
   return notices;

@@ -12,6 +12,7 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/services.hpp"
 #include "common/core/angles.hpp"
+#include "common/messages/alert_sound.hpp"
 #include "tools/diff/fields.hpp"
 
 namespace lookout::top {
@@ -36,6 +37,12 @@ std::int64_t NumLostBefore(const T& message, bus::SequenceWatch& sequence) {
   } else {
     return sequence.NumLostBefore(message.seq);
   }
+}
+
+std::string LevelText(const alerts_t& alerts, const alert_t& alert) {
+  const auto sound = messages::SoundOf(alerts, alert);
+  return fmt::format("{}{}{}: ", sound == messages::AlertSound::kSounds ? "(*) " : "", alert.level == alert_t::LEVEL_WARNING ? "WARNING" : "CAUTION",
+                     sound == messages::AlertSound::kSilenced ? " SILENCED" : "");
 }
 
 // In the order of the data flow.
@@ -329,7 +336,7 @@ std::vector<std::string> Board::AlertLines(TimePoint now) const {
   for (const auto& alert : alerts_->alerts) {
     if (alert.state != alert_t::STATE_ACTIVE || lines.size() == kMaxAlertLines) continue;
     // What stood when they ended is no less near since.
-    lines.push_back((is_old ? "before that: " : alert.level == alert_t::LEVEL_WARNING ? "WARNING: " : "CAUTION: ") + alert.text);
+    lines.push_back((is_old ? "before that: " : LevelText(*alerts_, alert)) + alert.text);
   }
   return lines;
 }

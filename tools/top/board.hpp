@@ -134,7 +134,8 @@ class Board {
   /// @return nullptr when TRACKS never came, or for more than 2 s
   const TrackPicture* Tracks(TimePoint now) const;
 
-  /// Alerts that nobody has acknowledged, the gravest first. "WARNING: ...", "CAUTION: ...". At most kMaxAlertLines. Or "NO LOOK-OUT: ...": a tracker
+  /// Alerts that nobody has acknowledged, the gravest first. "WARNING: ...", "CAUTION: ...", "(*) " before the one that
+  /// sounds, "WARNING SILENCED: ...". At most kMaxAlertLines. Or "NO LOOK-OUT: ...": a tracker
   /// was heard, and ALERTS do not come yet, or for more than 1 s no more; then what was active.
   std::vector<std::string> AlertLines(TimePoint now) const;
   static constexpr std::size_t kMaxAlertLines = 4;

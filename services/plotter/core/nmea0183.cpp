@@ -136,11 +136,11 @@ std::string_view TitleOf(Cause cause) {
   }
 }
 
-// Active and acknowledged, or a caution, which wants none: A; not acknowledged: V; over and not acknowledged: U; over: N (IEC 61924-2).
+// Active and acknowledged, or a caution, which wants none: A; not acknowledged: V, silenced: S; over and not acknowledged: U; over: N (IEC 61924-2).
 char AlfStateOf(const Notice& notice) {
   switch (notice.state) {
     case NoticeState::kActive:
-      return notice.level == Level::kCaution ? 'A' : 'V';
+      return notice.level == Level::kCaution ? 'A' : notice.sound == Sound::kSilenced ? 'S' : 'V';
     case NoticeState::kAcknowledged:
       return 'A';
     case NoticeState::kRectified:

@@ -14,7 +14,7 @@ constexpr int kMostRevision = 99;
 constexpr int kRepeats = 2;
 constexpr auto kRepeatAfter = 3s;
 
-bool HasChanged(const Notice& one, const Notice& other) { return one.level != other.level || one.state != other.state; }
+bool HasChanged(const Notice& one, const Notice& other) { return one.level != other.level || one.state != other.state || one.sound != other.sound; }
 
 int Next(int revision) { return revision % kMostRevision + 1; }
 
@@ -30,6 +30,7 @@ std::string SubjectOf(const Notice& notice) { return std::to_string(KeyOf(notice
 
 void NoticeSchedule::End(Sent sent, std::chrono::microseconds now, std::vector<Due>& due) {
   sent.notice.state = NoticeState::kCleared;
+  sent.notice.sound = Sound::kQuiet;
   sent.revision = Next(sent.revision);
   sent.next = now + kRepeatAfter;
   due.push_back({sent.notice, sent.revision, false});

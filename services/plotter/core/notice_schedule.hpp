@@ -22,9 +22,9 @@ RaisedKey RaisedKeyOf(const Notice& notice);
 /// The same as a text.
 std::string SubjectOf(const Notice& notice);
 
-/// A notice is due when it is new, when its level or its state has changed, and every kPeriod while it is not cleared. One that is there no more is
-/// told as cleared; what is old (is_old) is left as it was told. That one is cleared is told twice more, and to each new receiver for kEndedFor:
-/// else one lost message leaves an alarm standing. Time is host time passed.
+/// A notice is due when it is new, when its level, its state or its sound has changed, and every kPeriod while it is not cleared. One that is there
+/// no more is told as cleared; what is old (is_old) is left as it was told. That one is cleared is told twice more, and to each new receiver for
+/// kEndedFor: else one lost message leaves an alarm standing. Time is host time passed.
 class NoticeSchedule {
  public:
   static constexpr std::chrono::seconds kPeriod{10};
@@ -37,7 +37,7 @@ class NoticeSchedule {
     bool is_repeat = false;  // of what was told before: it can wait
   };
 
-  /// @param notices  all that are there now
+  /// @param notices  all that are there now; where the output has no words for sound, without it
   std::vector<Due> Take(std::span<const Notice> notices, std::chrono::microseconds now);
 
   /// A new receiver knows of none.

@@ -36,6 +36,8 @@ enum class NoticeState : std::int32_t { kActive = 1, kAcknowledged = 2, kRectifi
 // kPosition is the plotter's own; kPartUnseen is of WATCH, too: nobody looks into a part of the guard zone.
 enum class Cause : std::int32_t { kGuardZone = 1, kClosestApproach = 2, kWatch = 3, kPosition = 4, kPartUnseen = 5 };
 
+enum class Sound { kQuiet, kSounds, kSilenced };
+
 /// One track, as it is to be shown.
 struct Target {
   std::int64_t id = 0;  // of its track
@@ -66,6 +68,7 @@ struct Notice {
   std::int64_t track_id = 0;  // 0: of none
   Utime raised;
   Utime changed;
+  Sound sound = Sound::kQuiet;  // one of all sounds; silenced is a warning that would
   std::string text;
   bool is_old = false;  // nobody knows whether it still holds: it is neither told again nor cleared
 

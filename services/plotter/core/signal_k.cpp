@@ -80,7 +80,7 @@ std::string_view StateOf(const Notice& notice) {
 Json MethodsOf(const Notice& notice) {
   switch (notice.state) {
     case NoticeState::kActive:
-      return Json::array({"visual", "sound"});
+      return notice.sound == Sound::kSounds ? Json::array({"visual", "sound"}) : Json::array({"visual"});
     case NoticeState::kCleared:
       return Json::array();
     default:

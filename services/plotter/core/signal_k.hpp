@@ -23,8 +23,8 @@ std::string TargetDelta(std::string_view boat, const Target& target, Utime time)
 /// Its end: position, course, speed and closest approach are null.
 std::string TargetEndDelta(std::string_view boat, std::int64_t target_id, Utime time);
 
-/// notifications.lookout.<word>: warn for a caution, alarm for a warning; visual alone once it is acknowledged; alert for what is over and was not
-/// acknowledged; normal when it is over.
+/// notifications.lookout.<word>: warn for a caution, alarm for a warning; with sound where it is the one that sounds; alert for what is over and was
+/// not acknowledged; normal when it is over.
 std::string NoticeDelta(const Notice& notice, std::string_view word, Utime time);
 
 /// Names one raising of an alert. A server remembers by path that one was acknowledged: whoever is told of a new one under an old path hears nothing.

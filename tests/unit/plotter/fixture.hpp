@@ -67,6 +67,8 @@ class ServiceFixture : public ::testing::Test {
   std::int64_t scan_seq_ = 0;
   std::vector<track_t> tracks_{};
   std::vector<alert_t> alerts_{};
+  std::int64_t sounding_alert_id_ = 0;
+  std::int64_t silenced_until_us_ = 0;
   std::int64_t begin_us_ = kStartUs;
   std::int32_t pose_status_ = pose_t::STATUS_OK;
   std::int32_t heading_source_ = pose_t::HEADING_HDT;
@@ -175,6 +177,8 @@ class ServiceFixture : public ::testing::Test {
     message.end_utime_us = host_us_;
     message.alerts = alerts_;
     message.num_alerts = static_cast<std::int32_t>(alerts_.size());
+    message.sounding_alert_id = sounding_alert_id_;
+    message.silenced_until_utime_us = silenced_until_us_;
     bus::Publish(*bus_, bus::kAlerts, message);
     HandleAll();
   }

@@ -151,6 +151,9 @@ TEST(PlotterNmea, SaysAnAlertAsAlf) {
   const auto text = Alf("RA", notice, test::kTime, 4, 2);
   EXPECT_EQ(text,
             Sentence("RAALF,2,1,4,102030.45,B,W,V,LKO,10002,3,2,0,CLOSE APPROACH") + Sentence("RAALF,2,2,4,,,,,,,,,,boat 17: closest approach 3 m"));
+  notice.sound = Sound::kSilenced;
+  EXPECT_NE(Alf("RA", notice, test::kTime, 4, 2).find(",B,W,S,LKO,"), std::string::npos);
+  notice.sound = Sound::kSounds;
   // A receiver that was told of it by one identifier is told of its end by the same.
   notice.cause = Cause::kGuardZone;
   EXPECT_EQ(Alf("RA", notice, test::kTime, 4, 2), text);

@@ -101,6 +101,16 @@ TEST(PlotterNoticeSchedule, SendsWhatIsNewOrChangedAndRepeatsTheRest) {
   EXPECT_EQ(schedule.Take(notices, 12s).size(), 1U);
 }
 
+TEST(PlotterNoticeSchedule, SendsWhichOneSoundsAtOnce) {
+  NoticeSchedule schedule;
+  std::vector<Notice> notices{MakeNotice(1), MakeNotice(2)};
+  notices[0].sound = Sound::kSounds;
+  EXPECT_EQ(schedule.Take(notices, 0s).size(), 2U);
+  std::swap(notices[0].sound, notices[1].sound);
+  EXPECT_EQ(schedule.Take(notices, 1s).size(), 2U);
+  EXPECT_TRUE(schedule.Take(notices, 2s).empty());
+}
+
 TEST(PlotterNoticeSchedule, TellsTheEndOnce) {
   NoticeSchedule schedule;
   std::vector<Notice> notices{MakeNotice(1), MakeNotice(2)};

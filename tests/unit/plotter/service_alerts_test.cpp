@@ -42,6 +42,7 @@ std::string AcknowledgedDelta(const std::string& sent) {
 
 TEST_F(PlotterAlerts, PassesAcknowledgementsOfSignalKOn) {
   alerts_ = {MakeAlert(3)};
+  sounding_alert_id_ = 3;
   Run(300'000);
   const auto sent = signal_k_->With("closestApproach3").at(0);
   signal_k_->received = {sent};  // our own, come back
@@ -104,6 +105,52 @@ TEST_F(PlotterAlerts, TellsThatAPartIsNotLookedIntoApartFromThatNobodyLooks) {
   ASSERT_FALSE(signal_k_->With("lookoutGap3at").empty());
   EXPECT_NE(signal_k_->With("lookoutGap3at")[0].find("270 to 90 deg"), std::string::npos);
   EXPECT_FALSE(signal_k_->With("noLookout3at").empty());
+}
+
+// Two boats sounded at once on a display, and went on when somebody had pressed "silence" on the page.
+TEST_F(PlotterAlerts, SoundOnceAndAreSilencedOverSignalK) {
+  const auto method_of = [this](std::string_view alert) {
+    const auto sent = signal_k_->With(alert);
+    return sent.empty() ? "" : nlohmann::json::parse(sent.back())["updates"][0]["values"][0]["value"]["method"].dump();
+  };
+  alerts_ = {MakeAlert(3), MakeAlert(4)};
+  sounding_alert_id_ = 3;
+  Run(300'000);
+  EXPECT_EQ(method_of("closestApproach3at"), R"(["visual","sound"])");
+  EXPECT_EQ(method_of("closestApproach4at"), R"(["visual"])");
+  nmea_->sent.clear();
+  sounding_alert_id_ = 0;
+  silenced_until_us_ = host_us_ + 30'000'000;
+  Run(300'000);
+  EXPECT_EQ(method_of("closestApproach3at"), R"(["visual"])");
+  EXPECT_TRUE(nmea_->With("ALR").empty()) << "it has no word for it";
+}
+
+// What goes out without sound comes back without: no person has taken note. Nor is what was told so before it sounded, and is on its way back.
+TEST_F(PlotterAlerts, TakeNoEchoOfWhatDoesNotSoundForAnAcknowledgement) {
+  alerts_ = {MakeAlert(3), MakeAlert(4)};
+  sounding_alert_id_ = 3;
+  Run(300'000);
+  const auto quiet = signal_k_->With("closestApproach4at").at(0);
+  signal_k_->received = {quiet};
+  Wait(100'000);
+  EXPECT_TRUE(acknowledged_.empty());
+  sounding_alert_id_ = 4;
+  Run(300'000);
+  signal_k_->received = {quiet};
+  Wait(100'000);
+  EXPECT_TRUE(acknowledged_.empty());
+  Run(3'000'000);
+  signal_k_->received = {quiet};  // an older display
+  Wait(100'000);
+  ASSERT_EQ(acknowledged_.size(), 1U);
+  EXPECT_EQ(acknowledged_[0].alert_id, 4);
+  auto normal = nlohmann::json::parse(signal_k_->With("closestApproach3at").at(0));
+  normal["updates"][0]["values"][0]["value"]["state"] = "normal";
+  signal_k_->received = {normal.dump()};
+  Wait(100'000);
+  ASSERT_EQ(acknowledged_.size(), 2U);
+  EXPECT_EQ(acknowledged_[1].alert_id, 3);
 }
 
 // A server keeps what a process told that was killed.

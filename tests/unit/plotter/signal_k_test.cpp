@@ -80,6 +80,8 @@ TEST(PlotterSignalK, SaysAnAlert) {
     EXPECT_EQ(value["message"], "boat 17: ?\"near\"");
     return value["state"].get<std::string>() + value["method"].dump();
   };
+  EXPECT_EQ(state(), R"(alarm["visual"])") << "another one sounds";
+  notice.sound = Sound::kSounds;
   EXPECT_EQ(state(), R"(alarm["visual","sound"])");
   notice.level = Level::kCaution;
   EXPECT_EQ(state(), R"(warn["visual","sound"])");

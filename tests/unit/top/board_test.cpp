@@ -260,6 +260,29 @@ TEST(Board, SaysThatNobodyLooksWhereATrackerIsAndNoAlertsCome) {
   EXPECT_EQ(board.AlertLines(At(4.0)), std::vector<std::string>{"NO LOOK-OUT: no ALERTS for 2 s"});
 }
 
+TEST(Board, MarksTheAlertThatSoundsAndThoseThatAreSilenced) {
+  Board board(kStart);
+  alerts_t alerts{};
+  for (const std::int64_t id : {1, 2, 3}) {
+    alert_t alert{};
+    alert.id = id;
+    alert.level = alert_t::LEVEL_WARNING;
+    if (id == 3) alert.level = alert_t::LEVEL_CAUTION;
+    alert.state = alert_t::STATE_ACTIVE;
+    alert.changed_utime_us = 1'000'000'000 * id;
+    alert.text = "boat " + std::to_string(id);
+    alerts.alerts.push_back(alert);
+  }
+  alerts.num_alerts = 3;
+  alerts.sounding_alert_id = 2;
+  Say(board, bus::kAlerts, alerts, 1.0);
+  EXPECT_EQ(board.AlertLines(At(1.1)), (std::vector<std::string>{"WARNING: boat 1", "(*) WARNING: boat 2", "CAUTION: boat 3"}));
+  // Silence since 1500 s: the second came up after.
+  alerts.silenced_until_utime_us = 1'530'000'000;
+  Say(board, bus::kAlerts, alerts, 1.2);
+  EXPECT_EQ(board.AlertLines(At(1.3)), (std::vector<std::string>{"WARNING SILENCED: boat 1", "(*) WARNING: boat 2", "CAUTION: boat 3"}));
+}
+
 TEST(Board, TellsTheGreatestLatencyOfDataOnly) {
   Board board(kStart);
   auto health = HealthOf("vlp16", 0);
