@@ -300,6 +300,13 @@ void ScoreWarnings(const History& history, const ApproachLimits& limits, TrackSc
     const auto passed_us = moments[last].utime_us;
     while (last + 1 < moments.size() && is_warned(moments[last])) ++last;
     scores.warned_after_s.Add(SecondsBetween(passed_us, moments[last].utime_us));
+    std::set<std::int64_t> ids;
+    for (std::size_t n = searched_from; n <= last; ++n) {
+      for (const auto& alert : *moments[n].alerts) {
+        if (alert.holds && tracks.contains(alert.track_id)) ids.insert(alert.id);
+      }
+    }
+    scores.alerts_of_pass.Add(static_cast<double>(ids.size()));
   }
 }
 

@@ -193,6 +193,7 @@ void TrackScores::Add(const TrackScores& other) {
   num_alerts += other.num_alerts;
   warned_ahead_s.Add(other.warned_ahead_s);
   warned_after_s.Add(other.warned_after_s);
+  alerts_of_pass.Add(other.alerts_of_pass);
 }
 
 void Calibration::Add(double probability, bool came_true) {

@@ -116,6 +116,7 @@ struct TrackScores {
   std::int64_t num_alerts = 0;  // that came up, of any cause
   Summary warned_ahead_s;       // of each pass, from the first alert of an approach to when it is nearest; minus infinity: none came
   Summary warned_after_s;       // from when it is farther than the limit again to when the alert is over
+  Summary alerts_of_pass;  // of each pass: alerts, by their ids, of tracks that were of this thing, from the pass before to when the last is over
 
   std::vector<TrackEvent> events;  // in the order of time; Add leaves those of the other out
 

@@ -54,8 +54,10 @@ TEST(ImazuScenes, AreWarnedOfEightSecondsAheadAndSilentAfterPassing) {
     const auto scores = ScoresOf(fmt::format("imazu_{:02}", problem), kSeconds);
     EXPECT_EQ(scores.warned_ahead_s.count(), NumOthers(problem)) << "problem " << problem;
     if (scores.warned_ahead_s.count() == 0) continue;
-    std::printf("problem %d: warned %.1f s ahead or earlier, silent %.1f s after passing or earlier\n", problem, scores.warned_ahead_s.Percentile(0),
-                scores.warned_after_s.Max());
+    std::printf("problem %d: warned %.1f s ahead or earlier, silent %.1f s after passing or earlier, %.0f alert(s) each at most, %lld in all\n",
+                problem, scores.warned_ahead_s.Percentile(0), scores.warned_after_s.Max(), scores.alerts_of_pass.Max(),
+                static_cast<long long>(scores.num_alerts));
+    EXPECT_EQ(scores.alerts_of_pass.Max(), 1.0) << "problem " << problem << ": one danger, one alert";
     EXPECT_GE(scores.warned_ahead_s.Percentile(0), 8.0) << "problem " << problem;
     EXPECT_LE(scores.warned_after_s.Max(), kLongestAfterS) << "problem " << problem;
   }

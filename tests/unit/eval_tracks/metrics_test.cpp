@@ -364,7 +364,9 @@ TEST(TrackMetrics, WarningsAreTimedByThePass) {
   // Farther than 5 m when the hulls are sqrt(25 - 4) m apart along the course: 1.65 s after the centres were abreast.
   EXPECT_NEAR(scores.warned_after_s.Max(), 18.0 - 16.65, 0.21);
   EXPECT_NEAR(static_cast<double>(scores.calibration.count()), 115.0, 1.0);  // 3 s after the first track until they are abreast
+  EXPECT_EQ(scores.alerts_of_pass.Max(), 1.0);
   EXPECT_TRUE(std::isinf(ScoreOfPass(30.0, 31.0).warned_ahead_s.Max()));
+  EXPECT_EQ(ScoreOfPass(30.0, 31.0).alerts_of_pass.Max(), 0.0);
   EXPECT_DOUBLE_EQ(ScoreOfPass(30.0, 31.0).warned_after_s.Max(), 0.0);
 }
 
