@@ -62,6 +62,8 @@ std::string Printable(std::string_view text) {
 
 std::string PrintableLines(std::string_view text) { return Replaced(text, "\n  "); }
 
+bool IsPrintableLine(std::string_view text) { return Replaced(text, "?") == text && text.find('\n') == std::string_view::npos; }
+
 std::string CsvText(std::string_view text) {
   auto printable = Replaced(text, "\n");
   // A tab or CR before it is a "?" by now.

@@ -13,6 +13,9 @@ std::string Printable(std::string_view text);
 ///         behind it, so that none can begin a line that looks like another's. For sentences, which may name files in any script.
 std::string PrintableLines(std::string_view text);
 
+/// @return whether it is one line of UTF-8 with none of the control characters above
+bool IsPrintableLine(std::string_view text);
+
 /// @return a text cell of comma separated values: as PrintableLines without the spaces, quoted where RFC 4180 wants it, and with an apostrophe before
 ///         it where a spreadsheet would take it for a formula (it begins with = + - @). Not for numbers: "-1.5" would be text.
 std::string CsvText(std::string_view text);

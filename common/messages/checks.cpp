@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/printable.hpp"
 #include "common/core/utime.hpp"
 
 namespace lookout::messages {
@@ -285,9 +286,15 @@ std::optional<Fault> FaultOf(const alert_ack_t& message) {
 }
 
 std::optional<Fault> FaultOf(const order_t& message) {
+  constexpr std::size_t kMaxNameBytes = 40;
   if (!UtimeFromWire(message.utime_us)) return kOrderTime;
   if (message.source.size() > kMaxSourceBytes) return kOrderSource;
   if (message.kind == order_t::KIND_SILENCE) return std::nullopt;
+  if (message.kind == order_t::KIND_NAME) {
+    const bool is_name = message.name.size() <= kMaxNameBytes && IsPrintableLine(message.name) &&
+                         (message.name.empty() || message.name.find_first_not_of(' ') != std::string::npos);
+    return message.track_id > 0 && is_name ? std::nullopt : std::optional(kOrderName);
+  }
   if (message.kind != order_t::KIND_SETTINGS || message.mode < order_t::MODE_OPEN_WATER || message.mode > order_t::MODE_HARBOUR) return kOrderKind;
   const auto is_bad = [](float value) { return std::isinf(value); };
   if (is_bad(message.guard_zone_range_m) || is_bad(message.guard_zone_from_rad) || is_bad(message.guard_zone_to_rad) || is_bad(message.cpa_limit_m) ||

@@ -67,7 +67,8 @@ inline constexpr Fault kOrderTime = "orders_refused_time";      // does not exis
 inline constexpr Fault kOrderKind = "orders_refused_kind";      // a kind or mode that does not exist
 inline constexpr Fault kOrderNumber = "orders_refused_number";  // infinite, or a range or limit below 0
 inline constexpr Fault kOrderSource = "orders_refused_source";  // more than 64 bytes
-inline constexpr std::array kOrderFaults{kOrderTime, kOrderKind, kOrderNumber, kOrderSource};
+inline constexpr Fault kOrderName = "orders_refused_name";      // of no track, or no line of UTF-8 of at most 40 bytes, or only spaces
+inline constexpr std::array kOrderFaults{kOrderTime, kOrderKind, kOrderNumber, kOrderSource, kOrderName};
 
 /// Bounds of a scan: 65 536 columns and 2^21 cells are more than any scan of a known lidar has (128 rings x 2 returns x 4096 columns make 2^20).
 inline constexpr int kMaxRings = 128;

@@ -137,6 +137,9 @@ void Service::SendOrder(const Order& order, Utime host_time) {
     message.mode = order_t::MODE_OPEN_WATER;
     if (order.mode == Order::Mode::kHarbour) message.mode = order_t::MODE_HARBOUR;
   }
+  if (order.kind == Order::Kind::kName) message.kind = order_t::KIND_NAME;
+  message.track_id = order.track_id;
+  message.name = order.name;
   message.guard_zone_range_m = ToWire(order.guard_zone_range_m);
   message.guard_zone_from_rad = ToWire(order.guard_zone_from_deg, kRadPerDeg);
   message.guard_zone_to_rad = ToWire(order.guard_zone_to_deg, kRadPerDeg);

@@ -97,6 +97,7 @@ std::string TextOf(std::span<const UnseenPart> parts, bool is_whole) {
 
 std::string NameOf(const Alert& alert) {
   if (alert.cause == AlertCause::kWatch) return {};
+  if (!alert.name.empty()) return alert.name;
   if (alert.thing == kLandTrack) return "land";
   if (alert.thing <= kUnnamed) return "obstacle";
   return fmt::format("{} {}", KindText(alert.kind), alert.thing);

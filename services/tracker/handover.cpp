@@ -43,6 +43,7 @@ std::optional<Legacy> ToLegacy(const alerts_t& alerts, const tracks_t& tracks) {
     alert.state = AlertState::kAcknowledged;
     alert.thing = alert.nearest_track = message.track_id;
   }
+  for (std::size_t i = 0; i < alerts.given_name.size(); ++i) legacy.names.emplace_back(alerts.named_track_id[i], alerts.given_name[i]);
   for (const auto& message : tracks.tracks) {
     Track& track = legacy.tracks.emplace_back();
     track.id = message.id;
@@ -82,7 +83,7 @@ void Handover::Write(const alerts_t& alerts, const tracks_t& tracks) {
   for (const auto& alert : alerts.alerts) {
     if (alert.state == alert_t::STATE_ACKNOWLEDGED) ids.push_back(alert.id);
   }
-  if (ids.empty()) {
+  if (ids.empty() && alerts.given_name.empty()) {
     if (keep_until_ && time < *keep_until_) return;
     std::error_code failure;
     if (is_written_) fs::remove(File(), failure);
@@ -90,13 +91,14 @@ void Handover::Write(const alerts_t& alerts, const tracks_t& tracks) {
     written_.reset();
     return;
   }
-  if (written_ && ids == written_ids_ && time >= *written_ && time < *written_ + kRewriteAfter) return;
+  if (written_ && ids == written_ids_ && alerts.given_name == written_names_ && time >= *written_ && time < *written_ + kRewriteAfter) return;
   std::vector<std::uint8_t> log;
   bus::AppendLogEvent(log, 0, time, bus::kAlerts.name, bus::Encode(alerts));
   bus::AppendLogEvent(log, 1, time, bus::kTracks.name, bus::Encode(tracks));
   is_written_ = true;
   written_ = time;
   written_ids_ = std::move(ids);
+  written_names_ = alerts.given_name;
   try {
     io::OutputFile out(File(), {.force = true, .inputs = {}, .tell = [](const std::string&) {}});
     out.Write(log);

@@ -1,9 +1,11 @@
-// What one process of the tracker leaves to the next: its last ALERTS, and TRACKS of those that were acknowledged.
+// What one process of the tracker leaves to the next: its last ALERTS, and TRACKS of those that were acknowledged or have a name.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/pose.hpp"
@@ -15,12 +17,13 @@
 
 namespace lookout::tracker {
 
-/// For KeptAcknowledgements.
+/// For KeptAcknowledgements and KeptNames.
 struct Legacy {
   Utime time;  // end of its last scan
   Datum datum;
   std::vector<Alert> alerts;
   std::vector<Track> tracks;  // their places and velocities
+  std::vector<std::pair<std::int64_t, std::string>> names;
 };
 
 /// @param tracks  those of the alerts
@@ -38,9 +41,9 @@ class Handover {
   /// Of the process before; nullopt where there is none, or its file is damaged.
   std::optional<Legacy> Read();
 
-  /// After each scan. Only acknowledged alerts are worth keeping: without any, the file is removed, but not before what was read from it had time to
-  /// be raised again. Written when other alerts are acknowledged, else once a second: each time waits for the disk. A disk that is full is none of a
-  /// look-out's troubles: then nothing is left.
+  /// After each scan. Only acknowledged alerts and names are worth keeping: without any, the file is removed, but not before what was read from it
+  /// had time to be raised again. Written when other alerts are acknowledged or others have names, else once a second: each time waits for the disk.
+  /// A disk that is full is none of a look-out's troubles: then nothing is left.
   void Write(const alerts_t& alerts, const tracks_t& tracks);
 
  private:
@@ -51,6 +54,7 @@ class Handover {
   std::optional<Utime> keep_until_;
   std::optional<Utime> written_;
   std::vector<std::int64_t> written_ids_;
+  std::vector<std::string> written_names_;
 };
 
 }  // namespace lookout::tracker

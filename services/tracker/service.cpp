@@ -164,9 +164,12 @@ void Service::Use(const GatheredScan& scan) {
   }
   if (!memory_) {
     Begin(scan.key());
-    if (given_.before) memory_->kept.Keep(given_.before->time, given_.before->datum, given_.before->alerts, given_.before->tracks);
+    if (const auto& before = given_.before) {
+      memory_->kept.Keep(before->time, before->datum, before->alerts, before->tracks);
+      memory_->kept_names.Keep(before->time, before->datum, before->names, before->tracks);
+    }
   } else if (scan.is_anew && memory_->picture != nullptr) {
-    memory_->kept.Keep(label_->end_time, label_->datum, memory_->look_out.alerts(), memory_->picture->tracks);
+    Keep();
     memory_->tracker.Reset();
     memory_->look_out.ForgetTracks();
   }
@@ -187,8 +190,9 @@ void Service::Use(const GatheredScan& scan) {
   const double own_up_m = input.own ? input.own->position_map_m.z() : label_ ? label_->own_up_m : 0.0;
   label_ = {scan.key(), memory_->begin, input.end_time, scan.raw_seq, input.flags, input.datum, own_up_m};
   for (const auto& message : ToMessages(*label_, picture, bus::kMaxMessageBytes)) bus::Publish(bus_, bus::kTracks, message);
-  auto message = ToMessage(*label_, {alerts, acknowledged, orders, look_out.sounding(), look_out.silenced_until(), look_out.limits()}, picture,
-                           bus::kMaxMessageBytes - kZoneTextBytes);
+  auto message =
+      ToMessage(*label_, {alerts, acknowledged, orders, look_out.sounding(), look_out.silenced_until(), look_out.limits(), look_out.names().All()},
+                picture, bus::kMaxMessageBytes - kZoneTextBytes);
   TellOfZone(message);
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
@@ -196,6 +200,13 @@ void Service::Use(const GatheredScan& scan) {
 
   memory_->picture = &picture;
   num_alerts_ = std::ranges::count_if(alerts, [](const Alert& alert) { return alert.state != AlertState::kCleared; });
+}
+
+// Before all tracks are forgotten.
+void Service::Keep() {
+  const auto& look_out = memory_->look_out;
+  memory_->kept.Keep(label_->end_time, label_->datum, look_out.alerts(), memory_->picture->tracks);
+  memory_->kept_names.Keep(label_->end_time, label_->datum, look_out.names().All(), memory_->picture->tracks);
 }
 
 void Service::Begin(const ScanKey& begin) {
@@ -249,6 +260,10 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
   if (given_.script) {
     const auto found = given_.script->orders.find({input.time, input.seq});
     if (found != given_.script->orders.end()) orders_ = found->second;
+  } else if (memory_->picture != nullptr) {
+    const auto kept = memory_->kept_names.Take(label_->end_time, label_->datum, memory_->picture->tracks);
+    // What the process before left is from a file.
+    std::ranges::copy_if(kept, std::back_inserter(orders_), [](const Order& order) { return !messages::FaultOf(ToMessage(order)); });
   }
   auto taken = std::exchange(orders_, {});
   for (const auto& order : taken) memory_->look_out.Take(order, input.end_time);
@@ -282,8 +297,9 @@ void Service::Leave(const alerts_t& message, const Picture& picture) const {
   if (!given_.leave) return;
   Picture some;
   std::ranges::copy_if(picture.tracks, std::back_inserter(some.tracks), [&message](const Track& track) {
-    return std::ranges::any_of(message.alerts,
-                               [&track](const alert_t& alert) { return alert.track_id == track.id && alert.state == alert_t::STATE_ACKNOWLEDGED; });
+    return std::ranges::binary_search(message.named_track_id, track.id) || std::ranges::any_of(message.alerts, [&track](const alert_t& alert) {
+             return alert.track_id == track.id && alert.state == alert_t::STATE_ACKNOWLEDGED;
+           });
   });
   given_.leave(message, ToMessages(*label_, some, bus::kMaxMessageBytes).front());
 }
@@ -294,7 +310,7 @@ void Service::SendWatch() {
   auto alerts = memory_->look_out.alerts();
   std::erase_if(alerts, [](const Alert& one) { return one.state == AlertState::kCleared; });  // that was told once
   const auto& look_out = memory_->look_out;
-  auto message = ToMessage(*label_, {alerts, {}, {}, look_out.sounding(), look_out.silenced_until(), look_out.limits()},
+  auto message = ToMessage(*label_, {alerts, {}, {}, look_out.sounding(), look_out.silenced_until(), look_out.limits(), look_out.names().All()},
                            memory_->picture != nullptr ? *memory_->picture : Picture{}, bus::kMaxMessageBytes / 2);
   TellOfZone(message);
   auto alert = ToMessage(*watch_.alert(), std::nullopt);
@@ -310,6 +326,8 @@ HealthReport Service::Report() const {
   HealthReport report;
   if (memory_) report.counters = memory_->tracker.counters();
   report.counters.push_back({"alerts", num_alerts_});
+  report.counters.push_back({"names_of_no_track", memory_ ? memory_->look_out.num_names_of_no_track() : 0});
+  report.counters.push_back({"names_over_limit", memory_ ? memory_->look_out.names().num_over_limit() : 0});
   report.counters.push_back({"newcomers_over_limit", memory_ ? memory_->look_out.num_newcomers_over_limit() : 0});
   for (const auto& counter : gatherer_.counters()) report.counters.push_back(counter);
   auto counts = counts_;

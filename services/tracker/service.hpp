@@ -65,6 +65,7 @@ class Service {
     ZoneSight zone_sight;
     std::string zone_text;  // of the last part of the guard zone that nobody looked into
     KeptAcknowledgements kept;
+    KeptNames kept_names;
     const Picture* picture = nullptr;  // of the last scan: the tracker's own
     ScanKey begin;
   };
@@ -82,6 +83,7 @@ class Service {
 
   void Use(const std::vector<GatheredScan>& scans);
   void Use(const GatheredScan& scan);
+  void Keep();
   bool FollowScript(const ScanKey& key);
   void Begin(const ScanKey& begin);
   std::vector<Acknowledgement> TakeAcknowledgements(const ScanInput& input, const Picture& picture);

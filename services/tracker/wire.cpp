@@ -57,6 +57,7 @@ static_assert(static_cast<int>(AlertEnd::kHidden) == alert_t::END_HIDDEN);
 static_assert(static_cast<int>(AlertEnd::kMerged) == alert_t::END_MERGED);
 static_assert(static_cast<int>(OrderKind::kSilence) == order_t::KIND_SILENCE);
 static_assert(static_cast<int>(OrderKind::kSettings) == order_t::KIND_SETTINGS);
+static_assert(static_cast<int>(OrderKind::kName) == order_t::KIND_NAME);
 static_assert(static_cast<int>(Mode::kOpenWater) == order_t::MODE_OPEN_WATER);
 static_assert(static_cast<int>(Mode::kHarbour) == order_t::MODE_HARBOUR);
 
@@ -408,7 +409,11 @@ alert_t ToMessage(const Alert& alert, const std::optional<LocalFrame>& map) {
 }
 
 Order ToOrder(const order_t& message) {
-  Order order{Utime(microseconds(message.utime_us)), message.seq, message.source, static_cast<OrderKind>(message.kind), {}};
+  Order order{Utime(microseconds(message.utime_us)), message.seq, message.source, static_cast<OrderKind>(message.kind), {}, 0, {}};
+  if (order.kind == OrderKind::kName) {
+    order.track_id = message.track_id;
+    order.name = message.name;
+  }
   if (order.kind != OrderKind::kSettings) return order;
   order.settings = {static_cast<Mode>(message.mode), message.guard_zone_range_m, message.guard_zone_from_rad, message.guard_zone_to_rad,
                     message.cpa_limit_m};
@@ -426,6 +431,8 @@ order_t ToMessage(const Order& order) {
   message.guard_zone_from_rad = ToFloat(order.settings.guard_zone_from_rad);
   message.guard_zone_to_rad = ToFloat(order.settings.guard_zone_to_rad);
   message.cpa_limit_m = ToFloat(order.settings.cpa_limit_m);
+  message.track_id = order.track_id;
+  message.name = order.name;
   return message;
 }
 
@@ -440,6 +447,11 @@ alerts_t ToMessage(const ScanLabel& scan, const AlertsTold& told, const Picture&
   message.guard_zone_from_rad = ToFloat(told.limits.guard_zone.bearing.start_rad);
   message.guard_zone_to_rad = ToFloat(told.limits.guard_zone.bearing.start_rad + told.limits.guard_zone.bearing.width_rad);
   message.cpa_limit_m = ToFloat(told.limits.cpa_limit_m);
+  for (const auto& [id, name] : told.names) {
+    message.named_track_id.push_back(id);
+    message.given_name.push_back(name);
+  }
+  message.num_names = messages::CountOf(message.given_name);
   for (const auto& acknowledgement : told.acknowledged) message.acknowledged.push_back(ToMessage(acknowledgement));
   message.num_acknowledged = messages::CountOf(message.acknowledged);
   for (const auto& order : told.orders) message.orders.push_back(ToMessage(order));

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/messages/checks.hpp"
@@ -74,6 +75,7 @@ struct AlertsTold {
   std::int64_t sounding_alert_id = 0;
   std::optional<Utime> silenced_until = std::nullopt;
   Limits limits = {};
+  std::vector<std::pair<std::int64_t, std::string>> names = {};  // of tracks, by id
 };
 
 /// ALERTS of one scan. Those that do not fit are left out, the least grave first.

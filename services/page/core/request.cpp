@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/bus/channels.hpp"
+#include "common/core/printable.hpp"
 
 namespace lookout::page {
 
@@ -125,10 +126,21 @@ class Reader {
   std::string fault_;
 };
 
+constexpr std::size_t kMaxNameBytes = 40;  // order_t
+constexpr std::int64_t kMaxTrackId = std::int64_t{1} << 53;
+
 Order ReadOrder(Reader& reader) {
   Order order;
   const auto kind = reader.Text("kind");
   if (kind == "silence") return order;
+  if (kind == "name") {
+    order.kind = Order::Kind::kName;
+    order.track_id = reader.Whole("track_id", 1, kMaxTrackId);
+    order.name = reader.Text("name");
+    const bool is_blank = !order.name.empty() && order.name.find_first_not_of(' ') == std::string::npos;
+    if (is_blank || order.name.size() > kMaxNameBytes || !IsPrintableLine(order.name)) reader.Fail("this is no name");
+    return order;
+  }
   if (kind != "settings") reader.Fail("its kind is not known");
   order.kind = Order::Kind::kSettings;
   const auto mode = reader.Text("mode");

@@ -75,9 +75,9 @@ struct Acknowledgement {
 /// @return nullopt when the text is none; never throws
 std::optional<Acknowledgement> ParseAcknowledgement(std::string_view text);
 
-/// What a browser with a valid token tells the look-out to do: no sound for a while, or mode and limits (order_t).
+/// What a browser with a valid token tells the look-out to do: no sound for a while, mode and limits, or the name of a track (order_t).
 struct Order {
-  enum class Kind : std::uint8_t { kSilence, kSettings };
+  enum class Kind : std::uint8_t { kSilence, kSettings, kName };
   enum class Mode : std::uint8_t { kOpenWater, kHarbour };
   Kind kind = Kind::kSilence;
   Mode mode = Mode::kOpenWater;  // of settings, as the rest; nullopt: as the config says
@@ -85,6 +85,8 @@ struct Order {
   std::optional<double> guard_zone_from_deg = {};
   std::optional<double> guard_zone_to_deg = {};
   std::optional<double> cpa_limit_m = {};
+  std::int64_t track_id = 0;  // of a name, as the next
+  std::string name = {};      // empty: as it was called before
 
   friend bool operator==(const Order&, const Order&) = default;
 };

@@ -121,6 +121,7 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::v
     }
   }
   newest_ = time;
+  adopted_.clear();
 
   std::map<std::int64_t, Evidence> of_thing;
   for (const auto& danger : dangers) {
@@ -388,6 +389,7 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
     best = item;
   }
   if (best == entries_.end()) return;
+  adopted_.emplace_back(best->first, thing);
   auto moved = entries_.extract(best);
   entries_.erase(thing);
   auto& entry = moved.mapped();

@@ -36,6 +36,7 @@ struct Alert {
   std::int64_t thing = kLandTrack;
   std::int64_t nearest_track = kLandTrack;  // of the thing; 0: none, land, or it is not seen any more
   TrackKind kind = TrackKind::kUnknown;     // of it
+  std::string name = {};                    // that people gave to it; "": none
   Utime raised = {};
   Utime changed = {};
   double distance_m = kNan;
@@ -83,7 +84,8 @@ struct Surroundings {
 /// scans older than 1 s count neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
 ///
 /// A thing whose track is gone is lost. Its alert stays where it was seen last: until clear_s where it was looked for and is not there, or is abaft
-/// by now; else, since it may be hidden, for kHiddenS. After that, scans that are not whole clear it, too. What comes up again within kSameS, by its name or beside where it was last, is the same alert.
+/// by now; else, since it may be hidden, for kHiddenS. After that, scans that are not whole clear it, too. What comes up again within kSameS, by its
+/// name or beside where it was last, is the same alert.
 ///
 /// Nothing is in the guard zone unnoticed because it is named now so, now otherwise: what is in it and has no alert that holds counts for the alert
 /// of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it holds.
@@ -130,6 +132,8 @@ class Alerts {
 
   /// As returned by the last Update.
   const std::vector<Alert>& alerts() const { return alerts_; }
+  /// In the last Update: things whose alert goes on under another name, as they were found again (from, to).
+  const std::vector<std::pair<std::int64_t, std::int64_t>>& adopted() const { return adopted_; }
 
  private:
   // On and off with hysteresis.
@@ -190,6 +194,7 @@ class Alerts {
   std::map<std::int64_t, Entry> entries_;  // by thing
   std::vector<Alert> ended_;               // to be told in the next Update
   std::vector<Alert> alerts_;
+  std::vector<std::pair<std::int64_t, std::int64_t>> adopted_;
   std::optional<Utime> newest_;
   std::int64_t next_id_ = 1;
 };

@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace lookout::tracker {
 
 namespace {
+
+bool IsStructure(const Picture& picture, std::int64_t track_id) {
+  const auto track = std::ranges::find(picture.tracks, track_id, &Track::id);
+  return track != picture.tracks.end() && track->kind == TrackKind::kStructure;
+}
 
 double SpeedOf(const std::optional<Pose>& own) { return own && own->velocity_map_mps.allFinite() ? own->velocity_map_mps.norm() : kNan; }
 
@@ -14,6 +20,8 @@ double SpeedOf(const std::optional<Pose>& own) { return own && own->velocity_map
 void LookOut::Take(const Order& order, Utime time) {
   if (order.kind == OrderKind::kSilence) {
     sound_.Silence(time);
+  } else if (order.kind == OrderKind::kName) {
+    namings_.push_back(order);
   } else {
     settings_ = order.settings;
   }
@@ -35,11 +43,29 @@ void LookOut::Rename(const Picture& picture, Utime time) {
     things_.Rename(from, to);
     proof_.Rename(from, to);
     alerts_.Rename(from, things_.ThingOf(to), time);
+    names_.Rename(from, to);
   }
   proof_.Update(picture.tracks);
   if (picture.is_waterline_told) shore_m_ = picture.waterline_m;
   things_.Update(time, picture.tracks, shore_m_);
-  for (const auto& [from, to] : things_.merged()) alerts_.Rename(from, to, time);
+  for (const auto& [from, to] : things_.merged()) {
+    alerts_.Rename(from, to, time);
+    // What lies at a quay keeps its own.
+    if (to != kLandTrack && !names_.Of(from).empty() && IsStructure(picture, from)) names_.Rename(from, to);
+  }
+  Name(picture, time);
+}
+
+void LookOut::Name(const Picture& picture, Utime time) {
+  for (const auto& naming : std::exchange(namings_, {})) {
+    const auto id = naming.track_id;
+    if (std::ranges::find(picture.tracks, id, &Track::id) == picture.tracks.end()) {
+      ++num_names_of_no_track_;
+      continue;
+    }
+    const auto thing = things_.ThingOf(id);
+    names_.Give(IsStructure(picture, id) && thing != kLandTrack ? thing : id, naming.name, time);
+  }
 }
 
 const std::vector<Alert>& LookOut::Update(Utime time, bool is_whole, const Picture& picture, std::span<const VesselOutline> outlines,
@@ -49,9 +75,12 @@ const std::vector<Alert>& LookOut::Update(Utime time, bool is_whole, const Pictu
   std::ranges::move(ClosestApproachDangers({limits_.cpa_limit_m, params_.ability}, picture, own, is_own_still, things_, &proof_, time),
                     std::back_inserter(dangers));
   if (unseen) dangers.push_back(*unseen);
-  const auto& alerts = alerts_.Update(time, is_whole, dangers, {own, std::span(picture.tracks)});
-  sounding_ = sound_.Update(time, alerts);
-  return alerts;
+  told_ = alerts_.Update(time, is_whole, dangers, {own, std::span(picture.tracks)});
+  for (const auto& [from, to] : alerts_.adopted()) names_.Rename(from, to);
+  names_.Update(time, picture.tracks, told_);
+  for (auto& alert : told_) alert.name = names_.Of(alert.nearest_track, alert.thing);
+  sounding_ = sound_.Update(time, told_);
+  return told_;
 }
 
 }  // namespace lookout::tracker

@@ -12,6 +12,7 @@
 #include "services/tracker/core/alerts.hpp"
 #include "services/tracker/core/dangers.hpp"
 #include "services/tracker/core/limits.hpp"
+#include "services/tracker/core/names.hpp"
 #include "services/tracker/core/order.hpp"
 #include "services/tracker/core/sound.hpp"
 #include "services/tracker/core/things.hpp"
@@ -52,10 +53,15 @@ class LookOut {
   void ForgetTracks() {
     things_.Clear();
     proof_.Clear();
+    names_.Clear();
     shore_m_.clear();
   }
 
-  const std::vector<Alert>& alerts() const { return alerts_.alerts(); }
+  /// As returned by the last Update.
+  const std::vector<Alert>& alerts() const { return told_; }
+  const Names& names() const { return names_; }
+  /// Orders to name what is no track.
+  std::int64_t num_names_of_no_track() const { return num_names_of_no_track_; }
   const Limits& limits() const { return limits_; }
   /// The guard zone as it is set, which does not shrink in harbour: of it somebody should see all.
   GuardZoneParams WholeZone() const;
@@ -64,6 +70,8 @@ class LookOut {
   std::int64_t num_newcomers_over_limit() const { return newcomers_.num_over_limit(); }
 
  private:
+  void Name(const Picture& picture, Utime time);
+
   LookOutParams params_;
   Settings settings_;
   Limits limits_;
@@ -73,6 +81,10 @@ class LookOut {
   Newcomers newcomers_;
   StillWatch still_;
   Alerts alerts_;
+  Names names_;
+  std::vector<Order> namings_;  // with the next scan
+  std::int64_t num_names_of_no_track_ = 0;
+  std::vector<Alert> told_;
   Sound sound_;
   std::int64_t sounding_ = 0;
 };

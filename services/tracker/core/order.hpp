@@ -10,7 +10,7 @@
 namespace lookout::tracker {
 
 // Numbers of both are those of the wire.
-enum class OrderKind : std::int32_t { kSilence = 1, kSettings = 2 };
+enum class OrderKind : std::int32_t { kSilence = 1, kSettings = 2, kName = 3 };
 enum class Mode : std::int32_t { kOpenWater = 1, kHarbour = 2 };
 
 /// NaN: as the config says.
@@ -28,6 +28,8 @@ struct Order {
   std::string source;
   OrderKind kind = OrderKind::kSilence;
   Settings settings = {};
+  std::int64_t track_id = 0;  // of kName
+  std::string name = {};
 };
 
 }  // namespace lookout::tracker

@@ -128,6 +128,28 @@ TEST(AcknowledgementCheck, RefusesByTheRightCounter) {
   EXPECT_EQ(FaultOf(message), kAckTime);
 }
 
+TEST(OrderChecks, TakeNamesOfOneLine) {
+  order_t message{};
+  message.source = "page";
+  message.kind = order_t::KIND_NAME;
+  message.track_id = 7;
+  for (const auto* good : {"", "Kiosk pier", "Anna's mooring buoy", "Sj\xC3\xB6str\xC3\xB6m"}) {
+    message.name = good;
+    EXPECT_EQ(FaultOf(message), std::nullopt) << good;
+  }
+  for (const auto* bad : {"  ", "two\nlines", "bell\x07", "\xC3", "\xC2\x85", "\xE2\x80\xAE turned", "del\x7F"}) {
+    message.name = bad;
+    EXPECT_EQ(FaultOf(message), kOrderName) << bad;
+  }
+  message.name = std::string(40, 'a');
+  EXPECT_EQ(FaultOf(message), std::nullopt);
+  message.name += 'a';
+  EXPECT_EQ(FaultOf(message), kOrderName);
+  message.name = "land";
+  message.track_id = 0;
+  EXPECT_EQ(FaultOf(message), kOrderName) << "land, or what has no track";
+}
+
 TEST(OrderChecks, RefuseWhatCannotBe) {
   order_t message{};
   message.source = "page";

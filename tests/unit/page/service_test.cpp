@@ -162,6 +162,15 @@ TEST_F(PageService, SetsLimitsAndLeavesToTheConfigWhatIsNotGiven) {
   EXPECT_TRUE(std::isnan(ordered_[0].guard_zone_range_m));
   EXPECT_NEAR(ordered_[0].guard_zone_from_rad, 4.712389, 1e-5);
   EXPECT_EQ(ordered_[0].cpa_limit_m, 3.0F);
+  Order naming;
+  naming.kind = Order::Kind::kName;
+  naming.track_id = 7;
+  naming.name = "Kiosk pier";
+  Tell(naming);
+  ASSERT_EQ(ordered_.size(), 2U);
+  EXPECT_EQ(ordered_[1].kind, order_t::KIND_NAME);
+  EXPECT_EQ(ordered_[1].track_id, 7);
+  EXPECT_EQ(ordered_[1].name, "Kiosk pier");
 }
 
 TEST_F(PageService, SendsTheVeryBytesToWhoWatches) {

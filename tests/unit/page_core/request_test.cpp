@@ -126,13 +126,19 @@ TEST(Order, IsSilenceOrLimitsWithinBounds) {
   const auto silence = ParseOrder(R"({"kind":"silence"})");
   ASSERT_TRUE(silence);
   EXPECT_EQ(silence->kind, Order::Kind::kSilence);
+  const auto naming = ParseOrder(R"({"kind":"name","track_id":7,"name":"Kiosk pier"})");
+  ASSERT_TRUE(naming);
+  EXPECT_EQ(naming->track_id, 7);
+  EXPECT_EQ(naming->name, "Kiosk pier");
   const auto settings = ParseOrder(R"({"kind":"settings","mode":"harbour","guard_zone_range_m":7.5,"guard_zone_to_deg":60})");
   ASSERT_TRUE(settings);
   EXPECT_EQ(*settings, (Order{.kind = Order::Kind::kSettings, .mode = Order::Mode::kHarbour, .guard_zone_range_m = 7.5, .guard_zone_to_deg = 60.0}));
   for (const std::string text :
        {"", "{}", R"({"kind":"loud"})", R"({"kind":"silence","mode":"harbour"})", R"({"kind":"settings"})", R"({"kind":"settings","mode":"sea"})",
         R"({"kind":"settings","mode":"harbour","cpa_limit_m":-1})", R"({"kind":"settings","mode":"harbour","cpa_limit_m":"3"})",
-        R"({"kind":"settings","mode":"harbour","cpa_limit_m":1e300})", R"({"kind":"settings","mode":"harbour","guard_zone_from_deg":361})"})
+        R"({"kind":"settings","mode":"harbour","cpa_limit_m":1e300})", R"({"kind":"settings","mode":"harbour","guard_zone_from_deg":361})",
+        R"({"kind":"name","track_id":0,"name":"a"})", R"({"kind":"name","track_id":7})", R"({"kind":"name","track_id":7,"name":" "})",
+        R"({"kind":"name","track_id":7,"name":"a\nb"})", R"({"kind":"name","track_id":7,"name":"01234567890123456789012345678901234567890"})"})
     EXPECT_FALSE(ParseOrder(text)) << text;
 }
 

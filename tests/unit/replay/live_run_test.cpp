@@ -231,6 +231,36 @@ TEST_F(LiveRun, TakesOrdersWithTheScansWithWhichTheyWereTaken) {
   ExpectReplayEqualsLive();
 }
 
+// The buoy ahead has a name, also where its track has another number: after the lidar began anew, and after the process was killed.
+TEST_F(LiveRun, KeepsNamesOverARestartAndInAReplay) {
+  const auto names = [this] { return LastAlerts().given_name; };
+  Start();
+  for (int i = 0; i < 20; ++i) SendScan(i);
+  order_t order{};
+  order.source = "page";
+  order.kind = order_t::KIND_NAME;
+  order.name = "Anna's mooring buoy";
+  order.track_id = 77;
+  Deliver(bus::kOrders, order);
+  order.track_id = bus::Decode<tracks_t>(live_.at("TRACKS").back()).value().tracks.back().id;
+  Deliver(bus::kOrders, order);
+  for (int i = 20; i < 30; ++i) SendScan(i);
+  EXPECT_EQ(LastAlerts().named_track_id, std::vector{order.track_id});
+  EXPECT_EQ(names(), std::vector{order.name});
+  for (int i = 30; i < 60; ++i) SendScan(i, i - 30);
+  EXPECT_EQ(names(), std::vector{order.name});
+  EXPECT_NE(LastAlerts().named_track_id, std::vector{order.track_id});
+  process_.reset();  // killed
+  for (int i = 60; i < 70; ++i) SendScan(i, i - 30);
+  Start();
+  for (int i = 70; i < 170; ++i) SendScan(i, i - 30);
+  EXPECT_EQ(names(), std::vector{order.name});
+  ASSERT_EQ(LastAlerts().num_alerts, 1);
+  EXPECT_EQ(LastAlerts().alerts[0].name, order.name);
+  EXPECT_EQ(LastAlerts().alerts[0].text.find(order.name), 0U);
+  ExpectReplayEqualsLive();
+}
+
 TEST_F(LiveRun, BeginsAnewWhereTheProcessWasRestarted) {
   Start();
   for (int i = 0; i < 40; ++i) SendScan(i);

@@ -318,6 +318,26 @@ TEST(OrdersMessage, GoesBackToTheOrderItCameFrom) {
   EXPECT_TRUE(std::isnan(again.guard_zone_from_rad));
 }
 
+TEST(OrdersMessage, HoldsAName) {
+  order_t message{};
+  message.kind = order_t::KIND_NAME;
+  message.track_id = 7;
+  message.name = "Kiosk pier";
+  const auto again = ToMessage(ToOrder(message));
+  EXPECT_EQ(std::tie(again.kind, again.track_id, again.name), std::tie(message.kind, message.track_id, message.name));
+}
+
+TEST(AlertText, SaysTheNameThatPeopleGave) {
+  Alert alert;
+  alert.thing = 17;
+  alert.kind = TrackKind::kStructure;
+  alert.name = "Kiosk pier";
+  alert.is_in_zone = true;
+  alert.distance_m = 7.31;
+  EXPECT_EQ(TextOf(alert), "Kiosk pier in the guard zone: 7.3 m");
+  EXPECT_EQ(NameOf(alert), "Kiosk pier");
+}
+
 TEST(AlertText, SaysWhoHowNearAndFromWhere) {
   Alert alert;
   alert.cause = AlertCause::kClosestApproach;

@@ -125,7 +125,10 @@ inline void Fill(tracks_t& m) {
 
 inline void Fill(alert_ack_t& m) { m.source = "page"; }
 
-inline void Fill(order_t& m) { m.source = "page"; }
+inline void Fill(order_t& m) {
+  m.source = "page";
+  m.name = "Kiosk pier";
+}
 
 inline void Fill(alerts_t& m) {
   m.num_alerts = 2;
@@ -138,6 +141,9 @@ inline void Fill(alerts_t& m) {
   m.num_orders = 1;
   m.orders.resize(1);
   Fill(m.orders[0]);
+  m.num_names = 2;
+  m.named_track_id = {3, 17};
+  m.given_name = {"Kiosk pier", "Anna's mooring buoy"};
 }
 
 inline void Fill(health_t& m) {

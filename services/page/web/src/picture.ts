@@ -45,6 +45,8 @@ export interface Picture {
   alert_report: wire.Alerts | null;
   /** Alert of a track that holds, the gravest. */
   alert_of_track: ReadonlyMap<number, wire.Alert>;
+  /** What people called a track. */
+  name_of_track: ReadonlyMap<number, string>;
   /** Of the end of the scan, or the newest. */
   pose: wire.Pose | null;
   /** Own position in the map frame at the end of the scan; NaN = not known. */
@@ -172,6 +174,8 @@ export class Assembler {
     const alert_of_track = new Map<number, wire.Alert>();
     const alerts = this.alerts?.alerts ?? [];
     for (const alert of alerts) if (holds(alert) && alert.track_id !== 0 && !alert_of_track.has(alert.track_id)) alert_of_track.set(alert.track_id, alert);
+    const name_of_track = new Map<number, string>();
+    this.alerts?.named_track_id.forEach((id, index) => { name_of_track.set(id, this.alerts?.given_name[index] ?? ""); });
     const end_utime_us = first?.end_utime_us ?? tracksParts[0]?.end_utime_us ?? this.alerts?.end_utime_us ?? this.poses.at(-1)?.utime_us ?? 0;
     const pose = this.poses.findLast((candidate) => candidate.utime_us <= end_utime_us) ?? this.poses.at(-1) ?? null;
     const motion = motionOf(this.poses, pose);
@@ -182,7 +186,7 @@ export class Assembler {
       returns: scan.length === 0 ? null : this.returnsOf(scan, isOfScan ? segmentParts : kNoParts, pose, motion.turn_radps),
       segments, obstacles: this.obstacles.whole.flatMap((part) => part.obstacles), tracks,
       track_by_id: new Map(tracks.map((track) => [track.id, track])), track_of_segment, land_segments, waterline_map_m: this.waterline,
-      alerts, alert_report: this.alerts, alert_of_track, pose,
+      alerts, alert_report: this.alerts, alert_of_track, name_of_track, pose,
       own_east_m: pose === null ? NaN : pose.position_map_m[0]! + after_s * (pose.velocity_map_mps[0]! || 0),
       own_north_m: pose === null ? NaN : pose.position_map_m[1]! + after_s * (pose.velocity_map_mps[1]! || 0),
       heading_rad: pose === null ? NaN : pose.heading_rad + after_s * motion.turn_radps,

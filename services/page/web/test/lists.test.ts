@@ -2,9 +2,10 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { Health, Pose, Track } from "../src/messages/generated.js";
 import { channelsOf, faultOfPage, gravityOfProcess, Roll } from "../src/views/traffic.js";
-import { relative, restsOn, situation } from "../src/views/track_words.js";
+import { nameOf, relative, restsOn, shortNameOf, situation } from "../src/views/track_words.js";
 import { isOnlyCourse, lacking } from "../src/picture.js";
 import { gravityOfPose } from "../src/views/sensors.js";
+import { nameFrom } from "../src/views/name_form.js";
 import { place } from "../src/views/track_detail.js";
 
 const kDegree = Math.PI / 180;
@@ -56,6 +57,20 @@ test("what a track rests on, and its situation", () => {
   assert.equal(restsOn({ num_seen: 3, num_looks: 4, mean_returns: 1.5 }), "3 of 4 scans, 1.5 returns");
   assert.equal(situation({ status: Track.STATUS_COASTING, encounter: Track.ENCOUNTER_CROSSING_GIVE_WAY }), "crossing: give way, not seen now");
   assert.equal(situation({ status: Track.STATUS_CONFIRMED, encounter: Track.ENCOUNTER_NONE }), "");
+});
+
+test("a track is called as people named it, else by kind and number", () => {
+  const name_of_track = new Map([[7, "Anna's mooring buoy"]]), kind = Track.KIND_BUOY;
+  assert.equal(nameOf({ id: 7, kind }, { name_of_track }), "Anna's mooring buoy");
+  assert.equal(nameOf({ id: 8, kind }, { name_of_track }), "Buoy 8");
+  assert.equal(shortNameOf({ id: 8, kind }, { name_of_track }), "buoy 8");
+});
+
+test("a name that is typed is as long as the look-out takes it", () => {
+  assert.equal(nameFrom("  Kiosk pier "), "Kiosk pier");
+  assert.equal(nameFrom(" "), "");
+  assert.equal(nameFrom("ä".repeat(20)), "ä".repeat(20));
+  assert.equal(nameFrom("ä".repeat(21)), null, "two bytes each");
 });
 
 test("a place is written as on a chart", () => {

@@ -3,6 +3,7 @@ import { Track } from "../messages/generated.js";
 import type { Alert } from "../messages/generated.js";
 import { texts } from "../texts/index.js";
 import { duration, length, speed } from "../units.js";
+import { shortNameOf } from "../views/track_words.js";
 import { alertColour, alertLines } from "./alerts.js";
 import { trackColour } from "./colours.js";
 import { tracePath, type Scene } from "./scene.js";
@@ -65,7 +66,7 @@ export function paintTracks(scene: Scene): void {
     const radius_px = Math.max(kLeast_px, Math.min(30, track.width_m * plane.px_per_m / 2));
     const isRaised = alert !== undefined, moves = track.speed_mps > 0.3, range = length(state.settings, track.range_m);
     // Many stand about: of them the number and the range in one line is enough.
-    const isPlain = !isRaised && !isOn && !moves, name = texts.drawing.name(track.kind, track.id);
+    const isPlain = !isRaised && !isOn && !moves && !picture.name_of_track.has(track.id), name = shortNameOf(track, picture);
     const label = {
       x_px: x, y_px: y, radius_px,
       lines: isPlain ? [texts.drawing.plain(track.kind, track.id, range)] : [name, moves ? `${range}  ${speed(state.settings, track.speed_mps)}` : range],

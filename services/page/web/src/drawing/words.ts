@@ -3,13 +3,14 @@ import type { Picture } from "../picture.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { bearing, length } from "../units.js";
+import { shortNameOf } from "../views/track_words.js";
 
 /** To what a return belongs, or why to nothing. */
 export function describeLabel(picture: Picture, label: number): string {
   if (label < 0) return texts.drawing.reasons[-label] ?? texts.drawing.no_label;
   if (label === 0) return texts.drawing.no_label;
   const track = picture.track_of_segment.get(label);
-  const what = track !== undefined ? texts.drawing.name(track.kind, track.id) : picture.land_segments.has(label) ? texts.drawing.land : "";
+  const what = track !== undefined ? shortNameOf(track, picture) : picture.land_segments.has(label) ? texts.drawing.land : "";
   return what === "" ? texts.drawing.segment(label) : `${what}, ${texts.drawing.segment(label)}`;
 }
 export function describeReturn(state: State, picture: Picture, index: number): string {

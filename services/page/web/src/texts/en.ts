@@ -121,6 +121,7 @@ export const en = {
       notYet: "No tracks came: is lookout-tracker running?",
       gone: "This track is no longer there.",
       close: "Close",
+      naming: { label: "Name", set: "Name it", sent: "Sent to the look-out.", tooLong: "Too long: at most 40 bytes.", unset: "as the look-out calls it" },
       facts: {
         first: "Seen first", seen: "Seen last", size: "Length × width", top: "Top above water", exists: "Is there", moves: "Moves",
         close: "Comes too near", distance: "Hull to hull", drift: "Bearing drift", seenShare: "Outline seen", place: "Position",

@@ -8,6 +8,7 @@ const kPatience_ms = 5000;
 /** As POST /order takes it (PROTOCOL.md); what is left out is as the config says. */
 export type Order =
   | { kind: "silence" }
+  | { kind: "name"; track_id: number; name: string }
   | { kind: "settings"; mode: "open_water" | "harbour"; guard_zone_range_m?: number; guard_zone_from_deg?: number; guard_zone_to_deg?: number; cpa_limit_m?: number };
 
 /** @returns null when it was sent on to the look-out; else why not, in words */

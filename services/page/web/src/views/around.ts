@@ -5,6 +5,7 @@ import { lacking, type Picture } from "../picture.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { length } from "../units.js";
+import { shortNameOf } from "./track_words.js";
 import { PlanView } from "./plan_view.js";
 
 const kFirstReach_m = 50;
@@ -63,7 +64,7 @@ export class AroundView extends PlanView {
 
   protected describe({ picture }: Scene): string {
     const tracks = picture.tracks.filter((track) => track.status === 2 || track.status === 3).sort((a, b) => a.range_m - b.range_m), nearest = tracks[0];
-    return texts.drawing.around(tracks.length, nearest === undefined ? "" : `${texts.drawing.name(nearest.kind, nearest.id)}, ${length(this.state.settings, nearest.range_m)}`);
+    return texts.drawing.around(tracks.length, nearest === undefined ? "" : `${shortNameOf(nearest, picture)}, ${length(this.state.settings, nearest.range_m)}`);
   }
   protected noteFor(scene: Scene | null): string { return scene?.own.isOnMap === false ? texts.lacks[lacking(scene.picture.pose) ?? "position"] : ""; }
 }

@@ -13,6 +13,7 @@ import type { Picture } from "../picture.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { length } from "../units.js";
+import { shortNameOf } from "./track_words.js";
 
 const kFirst = { around_rad: 0, above_rad: 0.5, distance_m: 70, x_m: 12, y_m: 0 };
 const kHeightOfView_rad = 0.9;
@@ -162,15 +163,15 @@ export class CloudView implements View {
       const isRaised = name === "warning" || name === "caution";
       if (place === null) continue;
       tops.push({
-        x_px: place[0], y_px: place[1], radius_px: 4, lines: [this.labelOf(track, isRaised || isOn || name === "moving")],
+        x_px: place[0], y_px: place[1], radius_px: 4, lines: [this.labelOf(track, picture, isRaised || isOn || name === "moving")],
         colour: theme.css[isRaised || isOn ? name : name === "moving" ? "text" : "muted"], isBoxed: isRaised || isOn,
       });
     }
     labels.unshift(...tops);
   }
-  private labelOf(track: Track, isNamed: boolean): string {
+  private labelOf(track: Track, names: Picture, isNamed: boolean): string {
     const range = length(this.state.settings, track.range_m);
-    return isNamed ? `${texts.drawing.name(track.kind, track.id)}  ${range}` : texts.drawing.plain(track.kind, track.id, range);
+    return isNamed || names.name_of_track.has(track.id) ? `${shortNameOf(track, names)}  ${range}` : texts.drawing.plain(track.kind, track.id, range);
   }
   private isShown(picture: Picture, track: Track): boolean {
     return track.status !== 4 && (track.status !== 1 || this.state.settings.get("shows_tentative") || picture.alert_of_track.has(track.id));

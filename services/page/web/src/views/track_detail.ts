@@ -5,6 +5,7 @@ import { texts } from "../texts/index.js";
 import { duration, length } from "../units.js";
 import { button, Facts, make, setAttribute, setText } from "./dom.js";
 import { gravityOf } from "./gravity.js";
+import { NameForm } from "./name_form.js";
 import { nameOf, situation, textsOf } from "./track_words.js";
 
 const words = texts.panels.tracks;
@@ -15,11 +16,13 @@ export class TrackDetail {
   private readonly situation = make("span");
   private readonly alert = make("p", "reason");
   private readonly facts = new Facts();
+  private readonly naming: NameForm;
 
   constructor(private readonly state: State) {
     const head = make("header");
     head.append(this.name, this.situation, button(words.close, () => { state.choose(null); }, "plain end"));
-    this.element.append(head, this.alert, this.facts.element);
+    this.naming = new NameForm(state);
+    this.element.append(head, this.alert, this.facts.element, this.naming.element);
     this.element.hidden = true;
   }
 
@@ -29,6 +32,7 @@ export class TrackDetail {
     if (chosen === null || picture === null) return;
     const track = picture.track_by_id.get(chosen);
     this.facts.element.hidden = track === undefined;
+    if (track === undefined) this.naming.element.hidden = true;
     const alert = picture.alert_of_track.get(chosen);
     setAttribute(this.element, "data-gravity", alert === undefined ? null : gravityOf(alert));
     this.alert.hidden = alert === undefined;
@@ -37,7 +41,8 @@ export class TrackDetail {
       setText(this.situation, words.gone);
       return;
     }
-    setText(this.name, nameOf(track));
+    setText(this.name, nameOf(track, picture));
+    this.naming.draw(track.id);
     setText(this.situation, situation(track));
     this.drawFacts(track);
   }

@@ -8,7 +8,14 @@ import { bearing, duration, length, speed } from "../units.js";
 const words = texts.panels.tracks;
 const kDegree = Math.PI / 180;
 
-export function nameOf(track: Pick<wire.Track, "kind" | "id">): string { return words.name(words.kinds[track.kind] ?? words.kinds[4]!, track.id); }
+/** As people call it, else by kind and number. */
+export function nameOf(track: Pick<wire.Track, "kind" | "id">, { name_of_track }: Pick<Picture, "name_of_track">): string {
+  return name_of_track.get(track.id) ?? words.name(words.kinds[track.kind] ?? words.kinds[4]!, track.id);
+}
+/** The same within a sentence or a picture: "boat 7". */
+export function shortNameOf(track: Pick<wire.Track, "kind" | "id">, { name_of_track }: Pick<Picture, "name_of_track">): string {
+  return name_of_track.get(track.id) ?? texts.drawing.name(track.kind, track.id);
+}
 
 /** From the bow, as a helmsman says it. */
 export function relative(bearing_rad: number): string {

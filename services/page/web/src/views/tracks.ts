@@ -53,7 +53,7 @@ class Row {
     setAttribute(this.element, "data-status", kStatuses[track.status] ?? "");
     this.shape.element.style.display = gravity === null ? "none" : "";
     if (gravity !== null) this.shape.set(gravity);
-    setText(this.name, nameOf(track));
+    setText(this.name, nameOf(track, picture));
     setText(this.situation, situation(track));
     const values = textsOf(track, picture, state.settings);
     for (const [column, cell] of this.cells) setText(cell, values[column as keyof typeof values]);

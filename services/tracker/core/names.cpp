@@ -1,0 +1,83 @@
+#include "services/tracker/core/names.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace lookout::tracker {
+
+void Names::Give(std::int64_t id, const std::string& name, Utime time) {
+  if (name.empty()) {
+    names_.erase(id);
+  } else if (names_.size() >= kMost && !names_.contains(id)) {
+    ++num_over_limit_;
+  } else {
+    names_[id] = {name, time};
+  }
+}
+
+// Where both have one the older thing's stays.
+void Names::Rename(std::int64_t from, std::int64_t to) {
+  auto moved = names_.extract(from);
+  if (!moved) return;
+  moved.key() = to;
+  names_.insert(std::move(moved));
+}
+
+void Names::Update(Utime time, std::span<const Track> tracks, std::span<const Alert> alerts) {
+  if (names_.empty()) return;
+  std::set<std::int64_t> ids;
+  for (const auto& track : tracks) ids.insert(track.id);
+  for (const auto& alert : alerts) ids.insert(alert.thing);
+  for (auto& [id, given] : names_) {
+    if (ids.contains(id)) given.borne = time;
+  }
+  std::erase_if(names_, [time](const auto& item) { return std::chrono::abs(time - item.second.borne) > kKeptFor; });
+}
+
+std::string Names::Of(std::int64_t id, std::int64_t or_else) const {
+  for (const auto one : {id, or_else}) {
+    if (const auto found = names_.find(one); found != names_.end()) return found->second.name;
+  }
+  return {};
+}
+
+std::vector<std::pair<std::int64_t, std::string>> Names::All() const {
+  std::vector<std::pair<std::int64_t, std::string>> all;
+  all.reserve(names_.size());
+  for (const auto& [id, given] : names_) all.emplace_back(id, given.name);
+  return all;
+}
+
+void KeptNames::Keep(Utime time, const Datum& datum, std::span<const std::pair<std::int64_t, std::string>> names, std::span<const Track> tracks) {
+  for (const auto& [id, name] : names) {
+    const auto track = std::ranges::find(tracks, id, &Track::id);
+    if (track == tracks.end()) continue;
+    std::erase_if(kept_, [&name](const Kept& kept) { return kept.name == name; });
+    kept_.push_back({time, datum, name, track->position_m, track->velocity_mps});
+  }
+}
+
+std::vector<Order> KeptNames::Take(Utime time, const Datum& datum, std::span<const Track> tracks) {
+  std::erase_if(kept_, [time](const Kept& kept) { return time < kept.time || time - kept.time > Names::kKeptFor; });
+  std::vector<Order> orders;
+  std::set<std::int64_t> named;
+  std::erase_if(kept_, [&](const Kept& kept) {
+    if (!datum.IsSameAs(kept.datum)) return false;
+    const Eigen::Vector2d expected_m = kept.position_m + ToSeconds(time - kept.time) * kept.velocity_mps;
+    const Track* nearest = nullptr;
+    double least_m = KeptAcknowledgements::kSamePlaceM;
+    for (const auto& track : tracks) {
+      const double away_m = (track.position_m - expected_m).norm();
+      if (track.status != TrackStatus::kConfirmed || track.first < kept.time || named.contains(track.id) || away_m > least_m) continue;
+      least_m = away_m;
+      nearest = &track;
+    }
+    if (nearest == nullptr) return false;
+    named.insert(nearest->id);
+    orders.push_back({time, 0, "tracker", OrderKind::kName, {}, nearest->id, kept.name});
+    return true;
+  });
+  return orders;
+}
+
+}  // namespace lookout::tracker
