@@ -186,7 +186,7 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
   entry.warning.Update(time, counts_off, says_warning, says_no_warning, clear_s);
   Advance(entry, thing, time);
   if (!entry.HasAlert() || !entry.alert->Holds()) return;
-  Tell(entry, evidence);
+  Tell(entry, evidence, time);
   UpdatePlaces(entry, time, is_whole, evidence);
 }
 
@@ -200,6 +200,7 @@ void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidenc
   auto& alert = *entry.alert;
   if (IsOfTrack(thing) && around.tracks) {
     const Track* track = FindTrack(around, thing);
+    if (track != nullptr && track->status != TrackStatus::kLost) entry.velocity_mps = track->velocity_mps;
     if (track != nullptr) entry.was_likely = track->status != TrackStatus::kTentative && track->existence_probability >= 0.5;
     const bool is_there = is_told || (track != nullptr && track->status != TrackStatus::kLost);
     if (is_there) entry.lost.reset();
@@ -217,7 +218,7 @@ void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidenc
 }
 
 // What holds, in the words of this scan.
-void Alerts::Tell(Entry& entry, const Evidence& evidence) const {
+void Alerts::Tell(Entry& entry, const Evidence& evidence, Utime time) const {
   auto& alert = *entry.alert;
   alert.is_in_zone = entry.causes[kZone].is_on;
   alert.comes_near = entry.causes[kApproach].is_on;
@@ -229,6 +230,7 @@ void Alerts::Tell(Entry& entry, const Evidence& evidence) const {
   alert.distance_m = nearest->distance_m;
   alert.bearing_rad = nearest->bearing_rad;
   if (!nearest->place_map_m.hasNaN()) alert.place_map_m = nearest->place_map_m;
+  entry.placed = time;
   bool is_just_seen = true;
   for (const auto* danger : evidence) {
     if (danger == nullptr) continue;
@@ -367,29 +369,42 @@ void Alerts::Advance(Entry& entry, std::int64_t thing, Utime time) {
   }
 }
 
-// The alert of what was lost, or had no name, goes on under the name under which it is found: at the same place.
+bool Alerts::Entry::WasLost() const { return lost || (is_over && (alert->end == AlertEnd::kHidden || alert->end == AlertEnd::kGone)); }
+
+// To where it was last, or would be by now, beyond what it may have moved otherwise. Precondition: it has an alert with a place.
+double Alerts::Entry::DistanceTo(const Eigen::Vector2d& place_map_m, Utime time) const {
+  const Eigen::Vector2d stood = alert->place_map_m - place_map_m;
+  const Eigen::Vector2d went = stood + ToSeconds(time - placed) * velocity_mps;
+  return std::min(stood.norm(), went.norm()) - kMovedOnMps * std::fabs(ToSeconds(time - alert->seen));
+}
+
+// The alert of what was lost, or had no name, goes on under the name under which it is found: at the same place. What was found before the old track
+// was given up has an alert of its own: then the two become one.
 void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
   if (IsOfPlaces(thing) || danger.place_map_m.hasNaN()) return;
-  if (const auto own = entries_.find(thing); own != entries_.end() && own->second.alert) return;
+  const auto own = entries_.find(thing);
+  const bool has_own = own != entries_.end() && own->second.HasAlert();
+  if (own != entries_.end() && own->second.is_over) return;
   auto best = entries_.end();
   double least_m = kSamePlaceM;
   for (auto item = entries_.begin(); item != entries_.end(); ++item) {
     const auto& [other, entry] = *item;
-    if (!entry.alert || entry.alert->place_map_m.hasNaN()) continue;
+    if (item == own || !entry.alert || entry.alert->place_map_m.hasNaN()) continue;
     // What was lost; not what is over and goes on where it is clear.
-    const bool was_lost = entry.lost || (entry.is_over && (entry.alert->end == AlertEnd::kHidden || entry.alert->end == AlertEnd::kGone));
-    const bool is_free = IsOfTrack(other) ? was_lost : other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
+    const bool is_nameless = other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
+    const bool is_lost_now = IsOfTrack(other) && entry.lost && entry.HasAlert();
+    const bool is_free = has_own ? is_lost_now : IsOfTrack(other) ? entry.WasLost() : is_nameless;
     // Something else that comes by there was seen before.
     const Utime since = IsOfTrack(other) ? entry.alert->seen : entry.alert->raised;
     if (!is_free || danger.first < since - kBeganBefore) continue;
-    const double since_s = std::fabs(ToSeconds(time - entry.alert->seen));
-    const double away_m = (entry.alert->place_map_m - danger.place_map_m).norm() - kMovedOnMps * since_s;
+    const double away_m = entry.DistanceTo(danger.place_map_m, time);
     if (away_m > least_m) continue;
     least_m = away_m;
     best = item;
   }
   if (best == entries_.end()) return;
   adopted_.emplace_back(best->first, thing);
+  if (has_own) return Rename(best->first, thing, time);
   auto moved = entries_.extract(best);
   entries_.erase(thing);
   auto& entry = moved.mapped();

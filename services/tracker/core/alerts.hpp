@@ -85,7 +85,7 @@ struct Surroundings {
 ///
 /// A thing whose track is gone is lost. Its alert stays where it was seen last: until clear_s where it was looked for and is not there, or is abaft
 /// by now; else, since it may be hidden, for kHiddenS. After that, scans that are not whole clear it, too. What comes up again within kSameS, by its
-/// name or beside where it was last, is the same alert.
+/// name, beside where it was last or where it would be by now as it went, is the same alert; where that has one already the two become one.
 ///
 /// Nothing is in the guard zone unnoticed because it is named now so, now otherwise: what is in it and has no alert that holds counts for the alert
 /// of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it holds.
@@ -164,7 +164,10 @@ class Alerts {
     bool is_over = false;           // its end was told
     bool was_acknowledged = false;  // when it ended
     std::optional<Lost> lost;
-    bool was_likely = true;  // its track's existence, when it was known last
+    // Of its track, when it was known last.
+    bool was_likely = true;
+    Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
+    Utime placed;  // when its place was told last
     // Of land and of kUnnamed alone.
     // The scans of the last second that showed any: an acknowledgement is of what a person can have seen.
     struct Shown {
@@ -177,10 +180,12 @@ class Alerts {
 
     bool IsRaised() const;
     bool HasAlert() const { return alert && !is_over; }
+    bool WasLost() const;
+    double DistanceTo(const Eigen::Vector2d& place_map_m, Utime time) const;
   };
 
   void Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole, const Evidence& evidence, const Surroundings& around);
-  void Tell(Entry& entry, const Evidence& evidence) const;
+  void Tell(Entry& entry, const Evidence& evidence, Utime time) const;
   void UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidence& evidence) const;
   static void LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidence& evidence, const Surroundings& around);
   static void TellPlaces(Entry& entry, std::int64_t thing, const Acknowledgement& acknowledgement);

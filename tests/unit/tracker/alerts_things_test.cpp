@@ -252,6 +252,43 @@ TEST_F(AlertsOfTracks, GoOnUnderTheNumberUnderWhichAThingIsFoundAgain) {
   EXPECT_EQ(same->sight, AlertSight::kSeen);
 }
 
+// Two of Imazu's encounters told twice of a boat that was not seen for 5 s, and was 20 m farther on its way by then.
+TEST_F(AlertsOfTracks, GoOnWhereAThingIsFoundAgainOnItsWay) {
+  auto boat = Known(7);
+  boat.velocity_mps = {0.0, -4.0};
+  Show({boat});
+  Scans(5, {At(7, 0.0, 60.0)});
+  Show({Known(7, TrackStatus::kLost, 0.05)});
+  Scans(50, {});
+  Show({Known(9), Known(10)});
+  Scans(5, {At(9, 1.0, 39.0), At(10, 0.0, 50.0)});
+  const auto same = std::ranges::find(alerts_.alerts(), 9, &Alert::thing);
+  ASSERT_NE(same, alerts_.alerts().end());
+  EXPECT_EQ(same->id, 1);
+  const auto other = std::ranges::find(alerts_.alerts(), 10, &Alert::thing);
+  ASSERT_NE(other, alerts_.alerts().end());
+  EXPECT_NE(other->id, 1);
+}
+
+// A boat got a second track, and an alert of that, before its first was given up.
+TEST_F(AlertsOfTracks, BecomeOneWhereAThingHadASecondTrackWhenItsFirstWasLost) {
+  Show({Known(7)});
+  Scans(5, {At(7, 0.0, 20.0)});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Show({Known(7), Known(9)});
+  auto second = At(9, 1.0, 20.0);
+  Scans(3, {At(7, 0.0, 20.0), second});
+  ASSERT_EQ(alerts_.alerts().size(), 2U);
+  Show({Known(7, TrackStatus::kLost), Known(9)});
+  Scans(1, {second});
+  Scans(1, {second});
+  EXPECT_EQ(alerts_.alerts().size(), 2U) << "the second is told once as part of the first";
+  Scans(1, {second});
+  EXPECT_EQ(Only().id, 1);
+  EXPECT_EQ(Only().thing, 9);
+  EXPECT_EQ(Only().state, AlertState::kActive) << "nobody took note of the second";
+}
+
 // A motor boat that comes by where an acknowledged buoy was lost is no buoy.
 TEST_F(AlertsOfTracks, DoNotPassToWhatWasSeenElsewhereBefore) {
   Show({Known(7), Known(9)});
