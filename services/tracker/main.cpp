@@ -27,11 +27,10 @@ void Run(lookout::runtime::Process& process, const lookout::tracker::Params& par
 }  // namespace
 
 int main(int argc, char** argv) {
-  return lookout::runtime::ServiceMain<lookout::tracker::Params>(
-      argc, argv,
-      {.name = "tracker",
-       .purpose = "OBSTACLES, SEGMENTS, LIDAR_SCAN and POSE in, TRACKS and ALERTS out",
-       .load = [](const auto& folder) { return lookout::tracker::LoadParams(folder); },
-       .run = Run,
-       .remarks = lookout::tracker::ZoneRemarksAsComments});
+  return lookout::runtime::ServiceMain<lookout::tracker::Params>(argc, argv,
+                                                                 {.name = "tracker",
+                                                                  .purpose = "OBSTACLES, SEGMENTS, LIDAR_SCAN and POSE in, TRACKS and ALERTS out",
+                                                                  .load = [](const auto& folder) { return lookout::tracker::LoadParams(folder); },
+                                                                  .run = Run,
+                                                                  .remarks = lookout::tracker::ZoneRemarksAsComments});
 }
