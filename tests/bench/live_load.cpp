@@ -20,10 +20,13 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/sequence.hpp"
 #include "common/bus/services.hpp"
+#include "common/core/angles.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
+#include "lookout/tracks_t.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/files.hpp"
 
@@ -73,6 +76,58 @@ ProcessCost CostOf(int pid) {
   return cost;
 }
 
+// When tracks that were known before come into the guard zone, and when ALERTS tell of them.
+class Entries {
+ public:
+  void Take(const tracks_t& message, const alerts_t& limits) {
+    if (limits.guard_zone_range_m <= 0.0F) return;
+    const double width_rad = WrapTo2Pi(double{limits.guard_zone_to_rad} - double{limits.guard_zone_from_rad});
+    for (const auto& track : message.tracks) {
+      if (track.status != track_t::STATUS_CONFIRMED) continue;
+      const double off_rad = WrapTo2Pi(double{track.bearing_rad} - double{limits.guard_zone_from_rad});
+      const bool is_inside = track.range_m <= limits.guard_zone_range_m && (width_rad == 0.0 || off_rad <= width_rad);
+      auto& known = tracks_.try_emplace(track.id, Known{is_inside, is_inside}).first->second;
+      const bool is_known = message.utime_us - track.first_utime_us >= kKnownUs && !known.was_inside;
+      if (is_inside && is_known) waiting_[track.id] = {message.utime_us, known.is_told};
+      if (is_inside) known.was_inside = true;
+    }
+  }
+  // @param sent_us  when the message was on the bus
+  // @param last_us  of each scan, by its utime_us: its last packet
+  void Take(const alerts_t& message, std::int64_t sent_us, const std::map<std::int64_t, std::int64_t>& last_us) {
+    for (auto& [id, known] : tracks_) known.is_told = false;
+    for (const auto& alert : message.alerts) {
+      if (alert.state != alert_t::STATE_ACTIVE && alert.state != alert_t::STATE_ACKNOWLEDGED) continue;
+      if (const auto known = tracks_.find(alert.track_id); known != tracks_.end()) known->second.is_told = true;
+      const auto entry = waiting_.find(alert.track_id);
+      if (entry == waiting_.end()) continue;
+      const auto last = last_us.find(entry->second.scan_us);
+      constexpr double kMsPerUs = 1e-3;
+      if (last != last_us.end()) (entry->second.was_told ? known_ms : anew_ms).push_back(kMsPerUs * static_cast<double>(sent_us - last->second));
+      waiting_.erase(entry);
+    }
+    num_untold += static_cast<int>(std::erase_if(waiting_, [&](const auto& item) { return message.utime_us - item.second.scan_us > kMostUs; }));
+  }
+
+  std::vector<double> known_ms;  // of things that had an alert before: with the scan of the entry
+  std::vector<double> anew_ms;   // of things that had none: 3 scans of 5 must say so
+  int num_untold = 0;            // within 2 s: they are told as parts of a thing of which another place is nearer
+
+ private:
+  static constexpr std::int64_t kKnownUs = 1'000'000;
+  static constexpr std::int64_t kMostUs = 2'000'000;
+  struct Known {
+    bool was_inside = false;
+    bool is_told = false;
+  };
+  struct Entry {
+    std::int64_t scan_us = 0;
+    bool was_told = false;
+  };
+  std::map<std::int64_t, Known> tracks_;
+  std::map<std::int64_t, Entry> waiting_;
+};
+
 // Times of what went over the bus, by the kernel's receive stamps; those of this computer for all processes.
 class Listener {
  public:
@@ -84,6 +139,8 @@ class Listener {
     Subscribe(bus::kLidarPackets, &Listener::OnPackets);
     Subscribe(bus::kPose, &Listener::OnPose);
     Subscribe(bus::kObstacles, &Listener::OnObstacles);
+    Subscribe(bus::kTracks, &Listener::OnTracks);
+    Subscribe(bus::kAlerts, &Listener::OnAlerts);
     Subscribe(bus::kHealth, &Listener::OnHealth);
   }
 
@@ -91,6 +148,8 @@ class Listener {
 
   std::vector<double> beyond_pose_ms;  // from the later of last packet and POSE to OBSTACLES
   std::vector<double> from_packet_ms;  // from the last packet to OBSTACLES
+  std::vector<double> alerts_ms;       // from the last packet to ALERTS
+  Entries entries;
   std::map<std::string, health_t> health;
   std::int64_t num_lost = 0;  // by this listener: times of those turns are missing
   std::int64_t num_turns = 0;
@@ -138,6 +197,18 @@ class Listener {
     from_packet_ms.push_back(kMsPerUs * static_cast<double>(buffer->recv_utime - packet->second));
     beyond_pose_ms.push_back(kMsPerUs * static_cast<double>(buffer->recv_utime - std::max(packet->second, pose->second)));
   }
+  void OnTracks(const lcm::ReceiveBuffer* buffer, const std::string& /*channel*/) { entries.Take(Decoded<tracks_t>(buffer), limits_); }
+  void OnAlerts(const lcm::ReceiveBuffer* buffer, const std::string& /*channel*/) {
+    const auto message = Decoded<alerts_t>(buffer);
+    const auto packet = last_packet_us_.find(message.raw_seq);
+    if (message.is_watch != 0 || packet == last_packet_us_.end()) return;
+    constexpr double kMsPerUs = 1e-3;
+    alerts_ms.push_back(kMsPerUs * static_cast<double>(buffer->recv_utime - packet->second));
+    scan_end_us_[message.utime_us] = packet->second;
+    while (scan_end_us_.size() > kKept) scan_end_us_.erase(scan_end_us_.begin());
+    entries.Take(message, buffer->recv_utime, scan_end_us_);
+    limits_ = message;
+  }
   void OnHealth(const lcm::ReceiveBuffer* buffer, const std::string& /*channel*/) {
     const auto message = Decoded<health_t>(buffer);
     health[message.process] = message;
@@ -147,6 +218,8 @@ class Listener {
   lcm::LCM lcm_;
   std::map<std::int64_t, std::int64_t> last_packet_us_;  // by seq of LIDAR_PACKETS: a bundle ends with the packet that ends the turn
   std::map<std::int64_t, std::int64_t> pose_sent_us_;    // by time of the pose
+  std::map<std::int64_t, std::int64_t> scan_end_us_;     // last packet, by utime_us of the scan
+  alerts_t limits_{};                                    // as told last
   bus::SequenceWatch packet_sequence_;
   bus::SequenceWatch pose_sequence_;
   bus::SequenceWatch obstacles_sequence_;
@@ -247,6 +320,7 @@ class Run {
                 Quantile(listener_.from_packet_ms, 0.5), Quantile(listener_.from_packet_ms, 0.99));
     std::printf("OBSTACLES beyond the wait for POSE: p50 %.2f ms, greatest %.2f ms, %zu turns measured\n", Quantile(listener_.beyond_pose_ms, 0.5),
                 Quantile(listener_.beyond_pose_ms, 1.0), listener_.beyond_pose_ms.size());
+    PrintAlerts();
     bool is_good = Judge("OBSTACLES beyond the wait for POSE, p99", Quantile(listener_.beyond_pose_ms, 0.99), kMaxLatencyMs, "ms");
     is_good &= Judge("cpu of all processes together", total_percent, kMaxCpuPercent, "% of one core");
     is_good &= Judge("memory of the largest process, peak", most_megabytes, kMaxMegabytes, "MB");
@@ -258,6 +332,18 @@ class Run {
     if (!is_whole) std::printf("turns are missing\n");
     if (listener_.num_lost > 0) std::printf("this listener itself lost %lld messages\n", static_cast<long long>(listener_.num_lost));
     return is_good && is_whole;
+  }
+
+  void PrintAlerts() const {
+    const auto print = [](const char* what, const std::vector<double>& values_ms) {
+      std::printf("%s: p50 %.1f ms, p99 %.1f ms, greatest %.1f ms, %zu\n", what, Quantile(values_ms, 0.5), Quantile(values_ms, 0.99),
+                  Quantile(values_ms, 1.0), values_ms.size());
+    };
+    const auto& entries = listener_.entries;
+    print("ALERTS after the last packet of the scan", listener_.alerts_ms);
+    print("entries into the guard zone, of what had an alert, to ALERTS", entries.known_ms);
+    print("entries of what had none (told after 3 scans of 5)", entries.anew_ms);
+    std::printf("entries told as parts of a thing that is nearer elsewhere: %d\n", entries.num_untold);
   }
 
   fs::path folder_;
