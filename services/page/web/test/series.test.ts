@@ -31,7 +31,7 @@ test("numbers are read by their paths", () => {
   assert.equal(valueIn(picture, "POSE/position_map_m[1]", null), 4);
   assert.equal(valueIn(picture, "POSE/has_attitude", null), 1);
   assert.equal(valueIn(picture, "TRACK/chosen/range_m", 17), 31);
-  for (const path of ["TRACK/chosen/range_m", "TRACK/18/range_m", "POSE/none", "HEALTH/none/cpu_fraction", "HEALTH/tracker/channels.TRACKS.out.rate_hz", "NONE/x"]) {
+  for (const path of ["TRACK/chosen/range_m", "TRACK/18/range_m", "POSE/none", "HEALTH/none/cpu_fraction", "HEALTH/tracker/channels.ALERTS.out.rate_hz", "NONE/x"]) {
     assert.ok(Number.isNaN(valueIn(picture, path, null)), path);
   }
 });
