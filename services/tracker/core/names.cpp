@@ -52,7 +52,7 @@ void KeptNames::Keep(Utime time, const Datum& datum, std::span<const std::pair<s
   for (const auto& [id, name] : names) {
     const auto track = std::ranges::find(tracks, id, &Track::id);
     if (track == tracks.end()) continue;
-    std::erase_if(kept_, [&name](const Kept& kept) { return kept.name == name; });
+    std::erase_if(kept_, [&taken = name](const Kept& kept) { return kept.name == taken; });
     kept_.push_back({time, datum, name, track->position_m, track->velocity_mps});
   }
 }
