@@ -24,21 +24,6 @@ constexpr std::size_t kWatch = static_cast<std::size_t>(AlertCause::kWatch) - 1;
 // What has no track is shown for so long after it was seen last.
 constexpr std::chrono::milliseconds kShownFor{500};
 constexpr double kPassedS = 1.0;
-// How far off a lost thing may be by now, for each second.
-constexpr double kMovedOnMps = 0.5;
-// How long before the end of the old track, or before the alert of what had no name, the new one may have begun.
-constexpr std::chrono::seconds kBeganBefore{2};
-
-void SetState(Alert& alert, AlertState state, Utime time) {
-  if (alert.state != state) alert.changed = time;
-  alert.state = state;
-}
-
-void SetLevel(Alert& alert, AlertLevel level, Utime time) {
-  if (alert.level == level) return;
-  alert.level = level;
-  alert.changed = time;
-}
 
 // What is not known comes last.
 double LastIfUnknown(double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; }
@@ -67,8 +52,6 @@ void TellFromPlace(Alert& alert, const std::optional<Pose>& own) {
 }
 
 bool IsAbaft(double bearing_rad) { return std::fabs(WrapToPi(bearing_rad)) > 0.5 * kPi; }
-
-DangerPlace PlaceOf(const Alert& alert) { return {alert.distance_m, alert.bearing_rad, alert.place_map_m}; }
 
 }  // namespace
 
@@ -274,7 +257,7 @@ void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidenc
     entry.shown.push_back({time, std::move(places)});
   }
   if (alert.state == AlertState::kAcknowledged && entry.untold.is_on) {
-    SetState(alert, AlertState::kActive, time);
+    alert.SetState(AlertState::kActive, time);
     entry.untold = {};
   }
   if (alert.state == AlertState::kActive && untold) {
@@ -336,8 +319,8 @@ void Alerts::Advance(Entry& entry, std::int64_t thing, Utime time) {
       auto& alert = *entry.alert;
       entry.is_over = false;
       const bool is_known = entry.was_acknowledged && level <= alert.level;
-      SetState(alert, is_known ? AlertState::kAcknowledged : AlertState::kActive, time);
-      SetLevel(alert, level, time);
+      alert.SetState(is_known ? AlertState::kAcknowledged : AlertState::kActive, time);
+      alert.SetLevel(level, time);
       alert.end = AlertEnd::kNone;
       return;
     }
@@ -358,63 +341,15 @@ void Alerts::Advance(Entry& entry, std::int64_t thing, Utime time) {
     // What is named by now has an alert of its own.
     const bool is_named = thing == kUnnamed && HasNamedInZone([](const Alert& other) { return other.Holds(); });
     const bool wants_note = alert.state != AlertState::kAcknowledged && alert.level == AlertLevel::kWarning && !is_named;
-    SetState(alert, wants_note ? AlertState::kRectified : AlertState::kCleared, time);
+    alert.SetState(wants_note ? AlertState::kRectified : AlertState::kCleared, time);
     return;
   }
   const bool rises = level > alert.level;
-  SetLevel(alert, level, time);
+  alert.SetLevel(level, time);
   if (rises || alert.state == AlertState::kRectified) {
-    SetState(alert, AlertState::kActive, time);
+    alert.SetState(AlertState::kActive, time);
     alert.end = AlertEnd::kNone;
   }
-}
-
-bool Alerts::Entry::WasLost() const { return lost || (is_over && (alert->end == AlertEnd::kHidden || alert->end == AlertEnd::kGone)); }
-
-// To where it was last, or would be by now, beyond what it may have moved otherwise. Precondition: it has an alert with a place.
-double Alerts::Entry::DistanceTo(const Eigen::Vector2d& place_map_m, Utime time) const {
-  const Eigen::Vector2d stood = alert->place_map_m - place_map_m;
-  const Eigen::Vector2d went = stood + ToSeconds(time - placed) * velocity_mps;
-  return std::min(stood.norm(), went.norm()) - kMovedOnMps * std::fabs(ToSeconds(time - alert->seen));
-}
-
-// The alert of what was lost, or had no name, goes on under the name under which it is found: at the same place. What was found before the old track
-// was given up has an alert of its own: then the two become one.
-void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
-  if (IsOfPlaces(thing) || danger.place_map_m.hasNaN()) return;
-  const auto own = entries_.find(thing);
-  const bool has_own = own != entries_.end() && own->second.HasAlert();
-  if (own != entries_.end() && own->second.is_over) return;
-  auto best = entries_.end();
-  double least_m = kSamePlaceM;
-  for (auto item = entries_.begin(); item != entries_.end(); ++item) {
-    const auto& [other, entry] = *item;
-    if (item == own || !entry.alert || entry.alert->place_map_m.hasNaN()) continue;
-    // What was lost; not what is over and goes on where it is clear.
-    const bool is_nameless = other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
-    const bool is_lost_now = IsOfTrack(other) && entry.lost && entry.HasAlert();
-    const bool is_free = has_own ? is_lost_now : IsOfTrack(other) ? entry.WasLost() : is_nameless;
-    // Something else that comes by there was seen before.
-    const Utime since = IsOfTrack(other) ? entry.alert->seen : entry.alert->raised;
-    if (!is_free || danger.first < since - kBeganBefore) continue;
-    const double away_m = entry.DistanceTo(danger.place_map_m, time);
-    if (away_m > least_m) continue;
-    least_m = away_m;
-    best = item;
-  }
-  if (best == entries_.end()) return;
-  adopted_.emplace_back(best->first, thing);
-  if (has_own) return Rename(best->first, thing, time);
-  auto moved = entries_.extract(best);
-  entries_.erase(thing);
-  auto& entry = moved.mapped();
-  moved.key() = thing;
-  entry.alert->thing = thing;
-  entry.lost.reset();
-  entry.told.reset();
-  entry.untold = {};
-  entry.shown.clear();
-  entries_.insert(std::move(moved));
 }
 
 void Alerts::ClearOldestRectified(Utime time) {
@@ -424,17 +359,17 @@ void Alerts::ClearOldestRectified(Utime time) {
   }
   if (rectified.size() <= kMostRectified) return;
   std::ranges::sort(rectified, {}, [](const Alert* alert) { return std::pair(alert->changed, alert->id); });
-  for (std::size_t i = 0; i + kMostRectified < rectified.size(); ++i) SetState(*rectified[i], AlertState::kCleared, time);
+  for (std::size_t i = 0; i + kMostRectified < rectified.size(); ++i) rectified[i]->SetState(AlertState::kCleared, time);
 }
 
 bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
   for (auto& [thing, entry] : entries_) {
     if (!entry.HasAlert() || entry.alert->id != acknowledgement.alert_id || entry.alert->raised != acknowledgement.raised) continue;
     if (entry.alert->state == AlertState::kActive) {
-      SetState(*entry.alert, AlertState::kAcknowledged, time);
+      entry.alert->SetState(AlertState::kAcknowledged, time);
       if (IsOfPlaces(thing) || !entry.shown.empty()) TellPlaces(entry, thing, acknowledgement);
     } else if (entry.alert->state == AlertState::kRectified) {
-      SetState(*entry.alert, AlertState::kCleared, time);
+      entry.alert->SetState(AlertState::kCleared, time);
       entry.was_acknowledged = true;
     } else {
       return false;
@@ -457,47 +392,6 @@ void Alerts::TellPlaces(Entry& entry, std::int64_t thing, const Acknowledgement&
   }
   entry.told->Tell(shown_at, places);
   for (std::size_t i = 1; i < entry.shown.size(); ++i) entry.told->Untold(entry.shown[i].time, entry.shown[i].places);
-}
-
-void Alerts::ForgetMap() {
-  for (auto& [thing, entry] : entries_) {
-    if (entry.alert) entry.alert->place_map_m.setConstant(kNan);
-    if (entry.told) entry.told->ForgetMap();
-    for (auto& shown : entry.shown) {
-      for (auto& place : shown.places) place.position_map_m.setConstant(kNan);
-    }
-  }
-}
-
-void Alerts::Rename(std::int64_t from_thing, std::int64_t to_thing, Utime time) {
-  if (from_thing == to_thing) return;
-  auto moved = entries_.extract(from_thing);
-  if (!moved) return;
-  moved.key() = to_thing;
-  const auto placed = entries_.insert(std::move(moved));
-  auto& stays = placed.position->second;
-  if (placed.inserted) {
-    if (stays.alert) stays.alert->thing = to_thing;
-    return;
-  }
-  auto& goes = placed.node.mapped();
-  if (!goes.alert) return;
-  const bool is_older = goes.HasAlert() == stays.HasAlert() && stays.alert && goes.alert->id < stays.alert->id;
-  if ((goes.HasAlert() && !stays.HasAlert()) || !stays.alert || is_older) std::swap(stays, goes);
-  stays.alert->thing = to_thing;
-  if (!goes.HasAlert()) return;
-  if (goes.alert->Holds()) {
-    const bool is_open = goes.alert->state == AlertState::kActive || stays.alert->state != AlertState::kAcknowledged;
-    SetState(*stays.alert, is_open ? AlertState::kActive : AlertState::kAcknowledged, time);
-    SetLevel(*stays.alert, std::max(stays.alert->level, goes.alert->level), time);
-    stays.alert->end = AlertEnd::kNone;
-    for (std::size_t i = 0; i < stays.causes.size(); ++i) stays.causes[i].Merge(goes.causes[i]);
-    stays.warning.Merge(goes.warning);
-    if (!is_open && stays.told) stays.told->Tell(time, std::array{PlaceOf(*goes.alert)});
-  }
-  SetState(*goes.alert, AlertState::kCleared, time);
-  goes.alert->end = AlertEnd::kMerged;
-  ended_.push_back(*goes.alert);
 }
 
 }  // namespace lookout::tracker

@@ -51,6 +51,14 @@ struct Alert {
   AlertEnd end = AlertEnd::kNone;
 
   bool Holds() const { return state == AlertState::kActive || state == AlertState::kAcknowledged; }
+  void SetState(AlertState to, Utime time) {
+    if (state != to) changed = time;
+    state = to;
+  }
+  void SetLevel(AlertLevel to, Utime time) {
+    if (level != to) changed = time;
+    level = to;
+  }
 };
 
 struct Acknowledgement {
