@@ -23,7 +23,6 @@ bool IsWellFormed(const lidar_scan_t& message);
 bool IsWellFormed(const segments_t& message);
 bool IsWellFormed(const obstacles_t& message);
 bool IsWellFormed(const tracks_t& message);
-/// Also whether its numbers are finite and in their bounds: what is read of a log's map is used as a file's is.
 
 /// What is wrong with a message: the name of the counter of its refusals.
 using Fault = std::string_view;

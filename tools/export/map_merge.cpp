@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "services/tracker/core/land.hpp"
+#include "tools/export/map_geometry.hpp"
 #include "tools/export/own_map_text.hpp"
 
 namespace lookout::exporter {
@@ -18,6 +19,7 @@ namespace {
 constexpr double kMostPairM = 5.0;  // more than SamePlaceM ever is
 constexpr double kLeastDegM = 110'000.0;
 constexpr double kLandForS = 10.0;
+constexpr double kDegPerNanodeg = 1e-9;
 constexpr std::chrono::seconds kIsOver(60);      // a process that was not heard for so long before another begins
 constexpr std::size_t kMostProcesses = 16;       // at a time
 constexpr double kMostLandPlaceM = 1'000'000.0;  // from the datum
@@ -45,6 +47,7 @@ MapThing Joined(MapThing older, MapThing newer) {
   for (const auto* thing : {&older, &newer}) {
     for (const auto& day : thing->days) scans[day.day] += day.num_scans;
   }
+  if (!newer.gone && older.gone && *older.gone > newer.seen) newer.gone = older.gone;
   newer.days.clear();
   for (const auto& [day, num] : scans) AddScans({day, static_cast<std::int32_t>(std::min<std::int64_t>(num, kMostDayScans))}, newer.days);
   return newer;
@@ -139,11 +142,13 @@ std::vector<MapLand> MapMerge::Land() {
   constexpr double kCellM = tracker::LandMemory::kCellM;
   std::map<earth_grid::Cell, std::pair<std::vector<std::int32_t>, Utime>> cells;  // days, and seen last
   for (const auto& [datum, told_cells] : land_) {
-    const LocalFrame map = datum.Map();
+    const double height_m = std::isnan(datum.ellipsoid_height_m) ? 0.0 : datum.ellipsoid_height_m;
+    const MapOfDatum map({datum.latitude_deg, datum.longitude_deg, height_m});
     for (const auto& [cell, told] : told_cells) {
       if (told.days.empty()) continue;
-      const auto place = map.Reverse({kCellM * (cell.first + 0.5), kCellM * (cell.second + 0.5), 0.0});
-      auto& [days, seen] = cells[earth_grid::CellAt(place.latitude_deg, place.longitude_deg)];
+      const auto place = map.PlaceAt({kCellM * (cell.first + 0.5), kCellM * (cell.second + 0.5)});
+      auto& [days, seen] = cells[earth_grid::CellAt(kDegPerNanodeg * static_cast<double>(place.latitude_ndeg),
+                                                    kDegPerNanodeg * static_cast<double>(place.longitude_ndeg))];
       for (const auto day : told.days) AddDay(day, days);
       seen = std::max(seen, told.seen);
     }

@@ -23,6 +23,7 @@ namespace {
 
 constexpr std::size_t kMostWaitingScans = 64;  // 6 s
 constexpr std::size_t kMostSweeps = 16;        // one a second
+constexpr double kMostDatumHeightM = 1e5;
 constexpr const char* kSegmenterFile = "segmenter.txtpb";
 
 std::int64_t SecondOf(Utime time) { return std::chrono::floor<std::chrono::seconds>(time).time_since_epoch().count(); }
@@ -69,6 +70,7 @@ void MapReader::AddTracks(std::span<const tracks_t> parts, bool is_whole) {
   scan.end_time = *UtimeFromWire(head.end_utime_us);
   scan.datum = {head.datum_latitude_deg, head.datum_longitude_deg, head.datum_ellipsoid_height_m};
   if (!(std::abs(head.datum_latitude_deg) <= 90.0 && std::abs(head.datum_longitude_deg) <= 180.0)) return;  // then there are no tracks
+  if (std::abs(head.datum_ellipsoid_height_m) > kMostDatumHeightM) return;                                  // NaN: not known
   for (const auto& part : parts) {
     for (const auto& track : part.tracks) {
       if (auto standing = ToStandingTrack(track)) scan.tracks.push_back(std::move(*standing));
@@ -106,13 +108,18 @@ Taken MapReader::TakePose(Bytes bytes) {
   const auto pose = messages::ToPose(*message);
   if (std::holds_alternative<messages::Fault>(pose)) return Taken::kInconsistent;
   const auto* const newest = poses_.newest();
-  if (newest != nullptr && std::get<Pose>(pose).time <= newest->time) poses_.Clear();
+  if (newest != nullptr && std::get<Pose>(pose).time == newest->time) return Taken::kOk;  // it came twice
+  if (newest != nullptr && std::get<Pose>(pose).time < newest->time) poses_.Clear();
   poses_.Add(std::get<Pose>(pose));
   Release(kMostWaitingScans);
   return Taken::kOk;
 }
 
 Taken MapReader::TakeBoat(Bytes bytes) {
+  // What another boat, or another mounting, was like says nothing of this one.
+  boat_.reset();
+  max_range_m_.reset();
+  sight_.reset();
   const auto taken = TakeRunInfo(bytes, boat_);
   if (taken != Taken::kOk) return taken;
   const auto info = bus::Decode<run_info_t>(bytes);
