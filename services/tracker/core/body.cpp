@@ -71,8 +71,9 @@ constexpr double kSpeedSds = 3.0;
 constexpr double kSpeedSdsOn = 1.5;
 constexpr double kMovesAfterS = 0.6;
 // Deviation of the velocity of what is elsewhere than it was expected. It is rather another part of the same thing, since waves show one and hide the
-// other, than a motion: chosen on seeds 21 to 24 of the own scenes.
+// other, than a motion; what goes on the same way moves. Chosen on seeds 21 to 24 of the own scenes.
 constexpr double kJumpMps = 0.3;
+constexpr double kGoesOnMps = 1.0;
 
 // Where less than all is seen, it is a part: by so many deviations, and by a share of the size.
 constexpr double kPartSds = 2.0;
@@ -403,12 +404,14 @@ void Body::MoveAs(const Body& before, double jump_mps) {
 
 void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
   // What is known to move shows another part of itself, unless it was not where it should be.
-  const double jump_mps = has_jumped || !prefers_moving_ ? kJumpMps : 0.0;
   const Measured measured = Measure(seen_m, sides, range_m);
+  const Eigen::Vector2d jump_m = ShiftOf(measured, Eigen::Matrix2d::Zero(), range_m).shift_m;
+  const bool goes_on = jump_m.dot(last_jump_m_) > 0.0;
+  last_jump_m_ = jump_m;
+  const double jump_mps = has_jumped || !prefers_moving_ ? (goes_on ? kGoesOnMps : kJumpMps) : 0.0;
   if (measured.short_m > 0.0) {
-    const Eigen::Vector2d shift_m = ShiftOf(measured, Eigen::Matrix2d::Zero(), range_m).shift_m;
-    standing_ += shift_m;
-    moving_.head<2>() += shift_m;
+    standing_ += jump_m;
+    moving_.head<2>() += jump_m;
     moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
     num_measured_ = 0;
     parts_s_ = since_update_s_ = 0.0;
@@ -419,6 +422,7 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   // What is fixed to the thing stays where it is.
   const Eigen::Isometry2d frame = Frame();
   other.first_m_ = first_m_;
+  other.last_jump_m_ = jump_m;
   other.frame_turned_ = frame.linear();
   other.centered_m_ = frame.linear().transpose() * (other.position_m() - frame.translation());
   *this = other;

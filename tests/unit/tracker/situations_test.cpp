@@ -224,6 +224,29 @@ TEST(Situation, ADockComesIntoViewAsTheBoatPassesIt) {
   }
 }
 
+// It lies at its mooring for ten seconds.
+TEST(Situation, AFastBoatLeavesItsMooringAndIsSaidToMoveWithinFiveSeconds) {
+  constexpr double kMps2 = 1.5;
+  for (const double speed_mps : {5.0, 8.0}) {
+    SCOPED_TRACE(speed_mps);
+    const auto story = Follow(160, [speed_mps](int scan) {
+      const double under_way_s = test::kScanS * std::max(0, scan - 100);
+      const double until_s = std::min(under_way_s, speed_mps / kMps2);
+      const double way_m = 0.5 * kMps2 * until_s * until_s + speed_mps * (under_way_s - until_s);
+      return Moment{Box({-25.0 + way_m, 16.0}, 6.0, 2.2, 1.2, 1), AsOne(false)};
+    });
+    const auto boat = story.NameOf(1, 10);
+    EXPECT_EQ(story.Reported(), Labels{boat});
+    for (std::size_t scan = 150; scan < story.pictures.size(); ++scan) {
+      for (const auto& track : story.pictures[scan].tracks) {
+        if (track.id == boat) {
+          EXPECT_GT(track.velocity_mps.x(), 0.6 * speed_mps) << "in scan " << scan;
+        }
+      }
+    }
+  }
+}
+
 // Of a kayak that comes head-on, waves show the bow for a second and the paddler for the next. That which is seen jumps by 0.9 m, the kayak does not.
 TEST(Situation, AKayakOfWhichBowAndPaddlerAreSeenByTurnsMovesAllTheTime) {
   constexpr double kSpeedMps = 1.0;
