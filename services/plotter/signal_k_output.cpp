@@ -42,10 +42,10 @@ void SignalKOutput::SendNotices(const Told& told) {
       ended.state = NoticeState::kCleared;
       SendSurely(NoticeDelta(ended, raised->second.word, told.host_time), raised->second.word);
       raised->second.word = NoticeWord(notice);
-      raised->second.told_quiet.reset();
+      raised->second.is_heard_loud = false;
     }
+    if (notice.sound != last.sound) raised->second.is_heard_loud = false;
     raised->second.notice = notice;
-    if (notice.sound == Sound::kQuiet) raised->second.told_quiet = told.passed;
     SendSurely(NoticeDelta(notice, raised->second.word, told.host_time), raised->second.word);
   }
   // What ended is told again for a while, under its own word.
@@ -56,6 +56,8 @@ void SignalKOutput::SendAnew() {
   targets_.SendAnew();
   notices_.SendAnew();
   ended_words_.clear();
+  // A server tells first what it has kept, which may be from before.
+  for (auto& [key, raised] : raised_) raised.is_heard_loud = false;
   // Where something comes back.
   const auto kind = params().destination.kind;
   if (kind == Destination::Kind::kWebSocket || kind == Destination::Kind::kTcpClient) SendSurely(NoticeSubscription());
@@ -82,14 +84,16 @@ std::vector<std::int64_t> SignalKOutput::Read(const std::string& message, const 
     if (notice.id == 0 || raised == raised_.end() || raised->second.notice.state != notice.state) continue;
     const bool is_active = notice.state == NoticeState::kActive;
     if (!is_active && notice.state != NoticeState::kRectified) continue;
-    // So did what is active and not the one that sounds.
-    const auto& told_quiet = raised->second.told_quiet;
-    const bool is_loud = raised->second.notice.sound == Sound::kSounds && (!told_quiet || told.passed - *told_quiet >= kEchoedWithin);
+    // So did what is active and not the one that sounds; and what a server has kept from before.
+    const bool is_loud = raised->second.notice.sound == Sound::kSounds && raised->second.is_heard_loud;
     const bool is_acknowledged = std::ranges::any_of(read.echoes, [&](const NoticeEcho& echo) {
       const bool is_quiet = echo.is_quiet && (is_loud || !echo.is_raised);
       return echo.word == raised->second.word && (echo.is_acknowledged || (is_active && is_quiet));
     });
     if (is_acknowledged) keys.push_back(KeyOf(notice));
+    for (const auto& echo : read.echoes) {
+      if (echo.word == raised->second.word && echo.is_raised && !echo.is_quiet) raised->second.is_heard_loud = true;
+    }
   }
   return keys;
 }

@@ -39,10 +39,8 @@ class SignalKOutput : public Output {
   struct Raised {
     std::string word;
     Notice notice;
-    std::optional<std::chrono::microseconds> told_quiet = std::nullopt;  // under this word as active without sound: when last
+    bool is_heard_loud = false;  // it came back with sound since it was told so last: then quiet is what a person did
   };
-  // What was sent has come back by then.
-  static constexpr std::chrono::seconds kEchoedWithin{3};
   static constexpr std::size_t kMostRaised = 1000;
   std::map<RaisedKey, Raised> raised_;
   std::set<std::string> ended_words_;  // of processes before this one

@@ -140,8 +140,16 @@ TEST_F(PlotterAlerts, TakeNoEchoOfWhatDoesNotSoundForAnAcknowledgement) {
   signal_k_->received = {quiet};
   Wait(100'000);
   EXPECT_TRUE(acknowledged_.empty());
-  Run(3'000'000);
-  signal_k_->received = {quiet};  // an older display
+  const auto loud = signal_k_->With("closestApproach4at").back();
+  signal_k_->received = {loud};
+  Wait(100'000);
+  // A server that is there again tells first what it has kept, however old.
+  ++signal_k_->openings;
+  Run(4'000'000);
+  signal_k_->received = {quiet};
+  Wait(100'000);
+  EXPECT_TRUE(acknowledged_.empty());
+  signal_k_->received = {loud, quiet};  // an older display
   Wait(100'000);
   ASSERT_EQ(acknowledged_.size(), 1U);
   EXPECT_EQ(acknowledged_[0].alert_id, 4);
