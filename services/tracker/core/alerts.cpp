@@ -69,6 +69,9 @@ void Alerts::Latch::Update(Utime time, bool is_whole, bool says_on, bool says_of
   std::erase_if(looks, [time](const Look& look) { return time - look.time > kGreatestAge; });
   if (is_whole || says_on) looks.push_back({time, says_on});
   if (looks.size() > kWindowScans) looks.pop_front();
+  if (says_on || !quiet_since) quiet_since = time;
+  // A packet that is lost hides a part of the water, and not the same one for so long.
+  const bool counts_off = is_whole || ToSeconds(time - *quiet_since) >= kHiddenS;
   if (!is_on) {
     is_on = std::ranges::count_if(looks, &Look::says_on) >= kScansToRaise;
     off_since.reset();
@@ -76,7 +79,7 @@ void Alerts::Latch::Update(Utime time, bool is_whole, bool says_on, bool says_of
   } else if (!says_off) {
     off_since.reset();
     num_off = 0;
-  } else if (is_whole) {
+  } else if (counts_off) {
     if (!off_since) off_since = time;
     ++num_off;
     if (num_off >= kScansToClear && ToSeconds(time - *off_since) >= clear_s) {
@@ -89,6 +92,7 @@ void Alerts::Latch::Update(Utime time, bool is_whole, bool says_on, bool says_of
 void Alerts::Latch::ForgetLooks() {
   looks.clear();
   off_since.reset();
+  quiet_since.reset();
   num_off = 0;
 }
 
@@ -149,8 +153,6 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
   const bool is_lost_for_long = entry.lost && ToSeconds(time - entry.lost->since) >= kHiddenS;
   // It may be hidden, and is not abaft yet.
   const bool may_be_there = entry.lost && entry.lost->is_hidden && !is_lost_for_long && !IsAbaft(entry.alert->bearing_rad);
-  // A packet that is lost hides a part of the water, and not the same one for so long.
-  const bool counts_off = is_whole || is_lost_for_long;
   // It opens abaft: there is nothing to wait for.
   const bool has_passed =
       entry.HasAlert() && IsAbaft(entry.alert->bearing_rad) && evidence[kApproach] != nullptr && evidence[kApproach]->tcpa_s == 0.0;
@@ -161,12 +163,12 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
     const double probability = evidence[i] == nullptr ? 0.0 : evidence[i]->probability;
     const bool says_on = probability >= params_.raise_probability;
     const bool says_off = !(probability >= params_.clear_probability) && !may_be_there;
-    entry.causes[i].Update(time, counts_off, says_on, says_off, clear_s);
+    entry.causes[i].Update(time, is_whole, says_on, says_off, clear_s);
     const bool is_grave = evidence[i] != nullptr && evidence[i]->is_grave;
     says_warning = says_warning || (says_on && is_grave);
     says_no_warning = says_no_warning && !(is_grave && probability >= params_.clear_probability);
   }
-  entry.warning.Update(time, counts_off, says_warning, says_no_warning, clear_s);
+  entry.warning.Update(time, is_whole, says_warning, says_no_warning, clear_s);
   Advance(entry, thing, time);
   if (!entry.HasAlert() || !entry.alert->Holds()) return;
   Tell(entry, evidence, time);

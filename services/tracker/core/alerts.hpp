@@ -87,13 +87,14 @@ struct Surroundings {
 ///
 /// The thing is what is alerted: guard zone and closest approach are causes of one alert, which is as grave as the graver.
 ///
-/// Time goes by the message time of scans. On and off have hysteresis, and so has the level: what says "on" or "warning" must do so in 3 of the last
-/// 5 scans, and must not for clear_s (1 s of what opens abaft) and 5 whole scans. A scan that is not whole clears nothing, but what it shows counts;
-/// scans older than 1 s count neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
+/// Time goes by the message time of scans. On and off have hysteresis, and so has the level: what says "on" or "warning" must do so in 3 of the
+/// last 5 scans, and must not for clear_s (1 s of what opens abaft) and 5 whole scans. A scan that is not whole clears nothing, but what it shows
+/// counts; only where no scan has said "on" for kHiddenS do all scans clear. Scans older than 1 s count neither way; after a gap or a step back of
+/// more than 1 s clearing begins anew, since nobody looked.
 ///
 /// A thing whose track is gone is lost. Its alert stays where it was seen last: until clear_s where it was looked for and is not there, or is abaft
-/// by now; else, since it may be hidden, for kHiddenS. After that, scans that are not whole clear it, too. What comes up again within kSameS, by its
-/// name, beside where it was last or where it would be by now as it went, is the same alert; where that has one already the two become one.
+/// by now; else, since it may be hidden, for kHiddenS. What comes up again within kSameS, by its name, beside where it was last or where it would
+/// be by now as it went, is the same alert, acknowledged only where it is near and soon; where that has one already the two become one.
 ///
 /// Nothing is in the guard zone unnoticed because it is named now so, now otherwise: what is in it and has no alert that holds counts for the alert
 /// of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it holds.
@@ -153,6 +154,7 @@ class Alerts {
     std::deque<Look> looks;
     bool is_on = false;
     std::optional<Utime> off_since;
+    std::optional<Utime> quiet_since;  // the last scan that said on
     int num_off = 0;
 
     void Update(Utime time, bool is_whole, bool says_on, bool says_off, double clear_s);

@@ -15,6 +15,10 @@ constexpr double kMovedOnMps = 0.5;
 // How long before the end of the old track, or before the alert of what had no name, the new one may have begun.
 constexpr std::chrono::seconds kBeganBefore{2};
 
+// What comes up again so near, and so soon, is what was lost.
+constexpr double kSurelySameM = 5.0;
+constexpr double kSurelySameS = 10.0;
+
 bool HasTrack(std::int64_t thing) { return !IsOfPlaces(thing); }
 
 DangerPlace PlaceOf(const Alert& alert) { return {alert.distance_m, alert.bearing_rad, alert.place_map_m}; }
@@ -23,11 +27,11 @@ DangerPlace PlaceOf(const Alert& alert) { return {alert.distance_m, alert.bearin
 
 bool Alerts::Entry::WasLost() const { return lost || (is_over && (alert->end == AlertEnd::kHidden || alert->end == AlertEnd::kGone)); }
 
-// To where it was last, or would be by now, beyond what it may have moved otherwise. Precondition: it has an alert with a place.
+// To where it was last, or would be by now. Precondition: it has an alert with a place.
 double Alerts::Entry::DistanceTo(const Eigen::Vector2d& place_map_m, Utime time) const {
   const Eigen::Vector2d stood = alert->place_map_m - place_map_m;
   const Eigen::Vector2d went = stood + ToSeconds(time - placed) * velocity_mps;
-  return std::min(stood.norm(), went.norm()) - kMovedOnMps * std::fabs(ToSeconds(time - alert->seen));
+  return std::min(stood.norm(), went.norm());
 }
 
 // The alert of what was lost, or had no name, goes on under the name under which it is found: at the same place. What was found before the old track
@@ -44,12 +48,13 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
     if (item == own || !entry.alert || entry.alert->place_map_m.hasNaN()) continue;
     // What was lost; not what is over and goes on where it is clear.
     const bool is_nameless = other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
-    const bool is_lost_now = HasTrack(other) && entry.lost && entry.HasAlert();
+    const bool is_lost_now = HasTrack(other) && entry.lost && entry.HasAlert() && entry.alert->Holds();
     const bool is_free = has_own ? is_lost_now : HasTrack(other) ? entry.WasLost() : is_nameless;
     // Something else that comes by there was seen before.
     const Utime since = HasTrack(other) ? entry.alert->seen : entry.alert->raised;
     if (!is_free || danger.first < since - kBeganBefore) continue;
-    const double away_m = entry.DistanceTo(danger.place_map_m, time);
+    // Beyond what it may have moved otherwise.
+    const double away_m = entry.DistanceTo(danger.place_map_m, time) - kMovedOnMps * std::fabs(ToSeconds(time - entry.alert->seen));
     if (away_m > least_m) continue;
     least_m = away_m;
     best = item;
@@ -60,6 +65,12 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
   auto moved = entries_.extract(best);
   entries_.erase(thing);
   auto& entry = moved.mapped();
+  // So far off, or so late, it may be another boat: nobody has taken note of that.
+  const bool is_sure = entry.DistanceTo(danger.place_map_m, time) <= kSurelySameM && ToSeconds(time - entry.alert->seen) <= kSurelySameS;
+  if (!is_sure) {
+    entry.was_acknowledged = false;
+    if (entry.alert->state == AlertState::kAcknowledged) entry.alert->SetState(AlertState::kActive, time);
+  }
   moved.key() = thing;
   entry.alert->thing = thing;
   entry.lost.reset();

@@ -61,8 +61,10 @@ TEST_F(AlertsTest, BeginClearingAnewWheneverTheyHold) {
 TEST_F(AlertsTest, AreNotClearedByScansThatLostSomethingButRaisedByThem) {
   Scans(3, {Cpa(7, 0.9)}, false);
   EXPECT_EQ(Only().state, AlertState::kActive);
-  Scans(200, {}, false);
+  Scans(95, {}, false);
   EXPECT_EQ(Only().state, AlertState::kActive);
+  Scans(5 + 30, {}, false);
+  EXPECT_EQ(Only().state, AlertState::kCleared) << "where each scan lacks a packet, an alert must not stand for ever";
 }
 
 TEST_F(AlertsTest, AreNotClearedByAGap) {

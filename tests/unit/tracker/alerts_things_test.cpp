@@ -307,6 +307,25 @@ TEST_F(AlertsOfTracks, DoNotPassToWhatWasSeenElsewhereBefore) {
   EXPECT_EQ(other->id, 2);
 }
 
+// What comes out from behind a pier so late may be another boat: it has the alert, and nobody has taken note.
+TEST_F(AlertsOfTracks, SoundAgainForWhatComesUpLongAfterAnAcknowledgedBoatWasLost) {
+  for (const bool is_late : {false, true}) {
+    SCOPED_TRACE(is_late);
+    alerts_ = Alerts(kAlertParams);
+    Show({Known(7)});
+    Scans(5, {At(7, 0.0, 20.0)});
+    EXPECT_TRUE(Acknowledge(Only()));
+    Show({Known(7, TrackStatus::kLost)});
+    Scans(is_late ? 115 : 20, {});
+    Show({Known(9)});
+    auto boat = At(9, 0.0, is_late ? 26.0 : 21.0);
+    boat.first = time_;
+    Scans(5, {boat});
+    EXPECT_EQ(Only().thing, 9);
+    EXPECT_EQ(Only().state, is_late ? AlertState::kActive : AlertState::kAcknowledged);
+  }
+}
+
 // A second boat comes out of the lee of one whose alert was acknowledged and is over: it was born acknowledged, and never rang.
 TEST_F(AlertsOfTracks, DoNotPassFromABoatThatIsStillThere) {
   Show({Known(5)});
