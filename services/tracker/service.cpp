@@ -261,7 +261,7 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
     const auto found = given_.script->orders.find({input.time, input.seq});
     if (found != given_.script->orders.end()) orders_ = found->second;
   } else if (memory_->picture != nullptr) {
-    const auto kept = memory_->kept_names.Take(label_->end_time, label_->datum, memory_->picture->tracks);
+    const auto kept = memory_->kept_names.Take(label_->end_time, label_->datum, memory_->picture->tracks, memory_->look_out.names());
     // What the process before left is from a file.
     std::ranges::copy_if(kept, std::back_inserter(orders_), [](const Order& order) { return !messages::FaultOf(ToMessage(order)); });
   }

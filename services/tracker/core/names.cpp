@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
+#include <utility>
 
 namespace lookout::tracker {
 
@@ -52,31 +54,41 @@ void KeptNames::Keep(Utime time, const Datum& datum, std::span<const std::pair<s
   for (const auto& [id, name] : names) {
     const auto track = std::ranges::find(tracks, id, &Track::id);
     if (track == tracks.end()) continue;
-    std::erase_if(kept_, [&taken = name](const Kept& kept) { return kept.name == taken; });
+    const auto is_same = [&taken = name, &position_m = track->position_m](const Kept& kept) {
+      return kept.name == taken && (kept.position_m - position_m).norm() <= KeptAcknowledgements::kSamePlaceM;
+    };
+    std::erase_if(kept_, is_same);
     kept_.push_back({time, datum, name, track->position_m, track->velocity_mps});
   }
 }
 
-std::vector<Order> KeptNames::Take(Utime time, const Datum& datum, std::span<const Track> tracks) {
+// The nearest pair first: of two things side by side the one that is confirmed first does not take the other's name.
+std::vector<Order> KeptNames::Take(Utime time, const Datum& datum, std::span<const Track> tracks, const Names& names) {
   std::erase_if(kept_, [time](const Kept& kept) { return time < kept.time || time - kept.time > Names::kKeptFor; });
-  std::vector<Order> orders;
-  std::set<std::int64_t> named;
-  std::erase_if(kept_, [&](const Kept& kept) {
-    if (!datum.IsSameAs(kept.datum)) return false;
-    const Eigen::Vector2d expected_m = kept.position_m + ToSeconds(time - kept.time) * kept.velocity_mps;
-    const Track* nearest = nullptr;
-    double least_m = KeptAcknowledgements::kSamePlaceM;
+  std::vector<std::tuple<double, std::size_t, std::int64_t>> pairs;  // distance, index of kept_, track
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    if (!datum.IsSameAs(kept_[k].datum)) continue;
+    const Eigen::Vector2d expected_m = kept_[k].position_m + ToSeconds(time - kept_[k].time) * kept_[k].velocity_mps;
     for (const auto& track : tracks) {
       const double away_m = (track.position_m - expected_m).norm();
-      if (track.status != TrackStatus::kConfirmed || track.first < kept.time || named.contains(track.id) || away_m > least_m) continue;
-      least_m = away_m;
-      nearest = &track;
+      if (track.status != TrackStatus::kConfirmed || track.first < kept_[k].time || !names.Of(track.id).empty()) continue;
+      if (away_m <= KeptAcknowledgements::kSamePlaceM) pairs.emplace_back(away_m, k, track.id);
     }
-    if (nearest == nullptr) return false;
-    named.insert(nearest->id);
-    orders.push_back({time, 0, "tracker", OrderKind::kName, {}, nearest->id, kept.name});
-    return true;
-  });
+  }
+  std::ranges::sort(pairs);
+  std::vector<Order> orders;
+  std::set<std::int64_t> named;
+  std::vector<bool> is_given(kept_.size(), false);
+  for (const auto& [away_m, k, id] : pairs) {
+    if (is_given[k] || !named.insert(id).second) continue;
+    is_given[k] = true;
+    orders.push_back({time, 0, "tracker", OrderKind::kName, {}, id, kept_[k].name});
+  }
+  std::vector<Kept> left;
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    if (!is_given[k]) left.push_back(std::move(kept_[k]));
+  }
+  kept_ = std::move(left);
   return orders;
 }
 

@@ -58,8 +58,8 @@ class KeptNames {
   /// Before the tracks are forgotten; or at the begin, what the process before left.
   void Keep(Utime time, const Datum& datum, std::span<const std::pair<std::int64_t, std::string>> names, std::span<const Track> tracks);
 
-  /// With a scan, of its tracks: each name once, for a confirmed track that was seen first since.
-  std::vector<Order> Take(Utime time, const Datum& datum, std::span<const Track> tracks);
+  /// With a scan, of its tracks: each name once, for a confirmed track that was seen first since and has no name.
+  std::vector<Order> Take(Utime time, const Datum& datum, std::span<const Track> tracks, const Names& names);
 
  private:
   struct Kept {

@@ -118,20 +118,41 @@ TEST(Names, AreBounded) {
 
 TEST(KeptNames, PassToTheTrackThatStandsWhereItWouldBe) {
   KeptNames kept;
+  const Names none;
   auto moving = TrackAt(1, 20.0);
   moving.velocity_mps = {-2.0, 0.0};
   const std::vector<std::pair<std::int64_t, std::string>> names{{1, "Anna's boat"}, {2, "gone"}};
   kept.Keep(kBegin + seconds(1), kHere, names, std::vector{moving});
   auto far = TrackAt(4, 20.0), near = TrackAt(5, 14.5), old = TrackAt(3, 14.0);
   far.first = near.first = kBegin + seconds(2);
-  EXPECT_TRUE(kept.Take(kBegin + seconds(4), {60.0, 20.5, 0.0}, std::vector{old, far, near}).empty()) << "another map";
-  const auto orders = kept.Take(kBegin + seconds(4), kHere, std::vector{old, far, near});
+  EXPECT_TRUE(kept.Take(kBegin + seconds(4), {60.0, 20.5, 0.0}, std::vector{old, far, near}, none).empty()) << "another map";
+  const auto orders = kept.Take(kBegin + seconds(4), kHere, std::vector{old, far, near}, none);
   ASSERT_EQ(orders.size(), 1U);
   EXPECT_EQ(orders[0].track_id, 5) << "not what was seen before";
   EXPECT_EQ(orders[0].name, "Anna's boat");
-  EXPECT_TRUE(kept.Take(kBegin + seconds(5), kHere, std::vector{near}).empty()) << "once";
+  EXPECT_TRUE(kept.Take(kBegin + seconds(5), kHere, std::vector{near}, none).empty()) << "once";
   kept.Keep(kBegin + seconds(5), kHere, names, std::vector{moving});
-  EXPECT_TRUE(kept.Take(kBegin + seconds(16), kHere, std::vector{near}).empty());
+  EXPECT_TRUE(kept.Take(kBegin + seconds(16), kHere, std::vector{near}, none).empty());
+}
+
+// Two boats moored side by side: after a restart the one is confirmed a scan before the other.
+TEST(KeptNames, OfNeighboursAreNotMixedUpByWhichIsConfirmedFirst) {
+  for (const bool is_annas_first : {true, false}) {
+    SCOPED_TRACE(is_annas_first);
+    KeptNames kept;
+    Names names;
+    kept.Keep(kBegin, kHere, std::vector<std::pair<std::int64_t, std::string>>{{2, "Berta"}, {1, "Anna"}},
+              std::vector{TrackAt(1, 20.0), TrackAt(2, 24.0)});
+    auto annas = TrackAt(5, 20.2), bertas = TrackAt(6, 23.8);
+    annas.first = bertas.first = kBegin + seconds(1);
+    std::vector<Track> seen{is_annas_first ? annas : bertas};
+    for (int scan = 0; scan < 2; ++scan) {
+      for (const auto& order : kept.Take(kBegin + seconds(2 + scan), kHere, seen, names)) names.Give(order.track_id, order.name, order.time);
+      if (scan == 0) seen = {annas, bertas};
+    }
+    EXPECT_EQ(names.Of(5), "Anna");
+    EXPECT_EQ(names.Of(6), "Berta");
+  }
 }
 
 }  // namespace
