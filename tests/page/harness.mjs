@@ -6,10 +6,12 @@ import { chromium } from "playwright-core";
 
 export const bin = process.env.LOOKOUT_BIN, log = process.env.LOOKOUT_LOG, source = process.env.LOOKOUT_SOURCE;
 const kStart_ms = 20_000, kKept_chars = 100_000;
+const started = [];
 
 /** Starts a program, and waits until it prints what is expected (null: nothing). */
 export async function startProgram(program, words, expected, options = {}) {
   const child = spawn(program, words, { stdio: ["ignore", "pipe", "pipe"], ...options });
+  started.push(child);
   let printed = "";
   for (const stream of [child.stdout, child.stderr]) stream.on("data", (bytes) => { printed = (printed + bytes).slice(-kKept_chars); });
   const until = Date.now() + kStart_ms;
@@ -30,6 +32,8 @@ export async function stop({ child }) {
   child.kill("SIGTERM");
   await Promise.race([once(child, "exit"), wait(5000).then(() => { child.kill("SIGKILL"); })]);
 }
+/** What a trial that failed has left: the run of trials ends only without it. */
+export async function stopAll() { for (const child of started.splice(0)) await stop({ child }); }
 export const wait = (ms) => new Promise((settle) => { setTimeout(settle, ms); });
 
 export function startBrowser() {

@@ -29,16 +29,18 @@ fi
 # Modules are looked for beside the file that asks for them.
 cp "$here"/*.mjs "$folder"
 export LOOKOUT_SOURCE=$source_folder LOOKOUT_BIN=$build/bin
-# The same log each time: the same bytes out of the same seed.
+# The same log each time: the same bytes out of the same seed; made anew by newer programs, and after a trial that was cut off.
+lacks() { [ ! -f "$1" ] || [ "$build/bin/lookout-sim" -nt "$1" ] || [ "$build/bin/lookout-replay" -nt "$1" ]; }
 log=$folder/crossing.lcmlog
-if [ ! -f "$log" ]; then
-  "$build/bin/lookout-sim" --config "$source_folder/config/demo" --scene crossing --seed 1 --seconds 30 --pcap "$folder/crossing.pcap" --truth "$folder/truth" >/dev/null
-  "$build/bin/lookout-replay" --config "$source_folder/config/demo" --in "$folder/crossing.pcap" --out "$log" >/dev/null
+if lacks "$log"; then
+  rm -rf "$folder/truth"
+  "$build/bin/lookout-sim" --config "$source_folder/config/demo" --scene crossing --seed 1 --seconds 30 --force --pcap "$folder/crossing.pcap" --truth "$folder/truth" >/dev/null
+  "$build/bin/lookout-replay" --config "$source_folder/config/demo" --in "$folder/crossing.pcap" --out "$log" --force >/dev/null
 fi
 export LOOKOUT_LOG=$log
 # The same journey under another config, of a boat without a compass, and of one without a position.
 replayed() {  # NAME CONFIG CAPTURE
-  [ -f "$folder/$1.lcmlog" ] || "$build/bin/lookout-replay" --config "$2" --in "$3" --out "$folder/$1.lcmlog" >/dev/null
+  ! lacks "$folder/$1.lcmlog" || "$build/bin/lookout-replay" --config "$2" --in "$3" --out "$folder/$1.lcmlog" --force >/dev/null
 }
 config_of() {  # NAME: a copy of the demo's
   rm -rf "$folder/config_$1"
@@ -49,7 +51,7 @@ if [ "$trial" = film ]; then
   echo 'max_range_m: 60' >>"$folder/config_other/segmenter.txtpb"
   sed -i 's/range_m: 10/range_m: 16/' "$folder/config_other/tracker.txtpb"
   replayed other "$folder/config_other" "$folder/crossing.pcap"
-  [ -f "$folder/course.pcap" ] || "$build/bin/lookout-sim" --config "$source_folder/config/demo" --scene crossing --seed 1 --seconds 8 --no-heading --pcap "$folder/course.pcap" >/dev/null
+  ! lacks "$folder/course.pcap" || "$build/bin/lookout-sim" --force --config "$source_folder/config/demo" --scene crossing --seed 1 --seconds 8 --no-heading --pcap "$folder/course.pcap" >/dev/null
   replayed course "$source_folder/config/demo" "$folder/course.pcap"
   config_of nowhere
   sed -i 's/use_lidar_nmea: true/use_lidar_nmea: false nmea_port: 9999/' "$folder/config_nowhere/navigator.txtpb"
