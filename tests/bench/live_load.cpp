@@ -342,7 +342,7 @@ class Run {
     const auto& entries = listener_.entries;
     print("ALERTS after the last packet of the scan", listener_.alerts_ms);
     print("entries into the guard zone, of what had an alert, to ALERTS", entries.known_ms);
-    print("entries of what had none (told after 3 scans of 5)", entries.anew_ms);
+    print("entries of what had none", entries.anew_ms);
     std::printf("entries told as parts of a thing that is nearer elsewhere: %d\n", entries.num_untold);
   }
 

@@ -65,7 +65,7 @@ bool IsGraver(const Danger& one, const Danger& other) {
   return rank(one) < rank(other);
 }
 
-void Alerts::Latch::Update(Utime time, bool is_whole, bool says_on, bool says_off, double clear_s) {
+void Alerts::Latch::Update(Utime time, bool is_whole, bool says_on, bool says_off, double clear_s, bool is_known) {
   std::erase_if(looks, [time](const Look& look) { return time - look.time > kGreatestAge; });
   if (is_whole || says_on) looks.push_back({time, says_on});
   if (looks.size() > kWindowScans) looks.pop_front();
@@ -73,7 +73,7 @@ void Alerts::Latch::Update(Utime time, bool is_whole, bool says_on, bool says_of
   // A packet that is lost hides a part of the water, and not the same one for so long.
   const bool counts_off = is_whole || ToSeconds(time - *quiet_since) >= kHiddenS;
   if (!is_on) {
-    is_on = std::ranges::count_if(looks, &Look::says_on) >= kScansToRaise;
+    is_on = (says_on && is_known) || std::ranges::count_if(looks, &Look::says_on) >= kScansToRaise;
     off_since.reset();
     num_off = 0;
   } else if (!says_off) {
@@ -163,7 +163,7 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
     const double probability = evidence[i] == nullptr ? 0.0 : evidence[i]->probability;
     const bool says_on = probability >= params_.raise_probability;
     const bool says_off = !(probability >= params_.clear_probability) && !may_be_there;
-    entry.causes[i].Update(time, is_whole, says_on, says_off, clear_s);
+    entry.causes[i].Update(time, is_whole, says_on, says_off, clear_s, evidence[i] != nullptr && evidence[i]->is_known);
     const bool is_grave = evidence[i] != nullptr && evidence[i]->is_grave;
     says_warning = says_warning || (says_on && is_grave);
     says_no_warning = says_no_warning && !(is_grave && probability >= params_.clear_probability);

@@ -88,9 +88,9 @@ struct Surroundings {
 /// The thing is what is alerted: guard zone and closest approach are causes of one alert, which is as grave as the graver.
 ///
 /// Time goes by the message time of scans. On and off have hysteresis, and so has the level: what says "on" or "warning" must do so in 3 of the
-/// last 5 scans, and must not for clear_s (1 s of what opens abaft) and 5 whole scans. A scan that is not whole clears nothing, but what it shows
-/// counts; only where no scan has said "on" for kHiddenS do all scans clear. Scans older than 1 s count neither way; after a gap or a step back of
-/// more than 1 s clearing begins anew, since nobody looked.
+/// last 5 scans (in one, where a known track enters the guard zone), and must not for clear_s (1 s of what opens abaft) and 5 whole scans. A scan
+/// that is not whole clears nothing, but what it shows counts; only where no scan has said "on" for kHiddenS do all scans clear. Scans older than 1 s
+/// count neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
 ///
 /// A thing whose track is gone is lost. Its alert stays where it was seen last: until clear_s where it was looked for and is not there, or is abaft
 /// by now; else, since it may be hidden, for kHiddenS. What comes up again within kSameS, by its name, beside where it was last or where it would
@@ -157,7 +157,7 @@ class Alerts {
     std::optional<Utime> quiet_since;  // the last scan that said on
     int num_off = 0;
 
-    void Update(Utime time, bool is_whole, bool says_on, bool says_off, double clear_s);
+    void Update(Utime time, bool is_whole, bool says_on, bool says_off, double clear_s, bool is_known = false);
     void Merge(const Latch& other) { is_on = is_on || other.is_on; }
     void ForgetLooks();
   };

@@ -39,6 +39,7 @@ struct Danger {
   double time_left_s = kNan;  // until it is too near; 0: it is, and comes nearer; NaN: it does not come nearer
   bool is_grave = false;      // act now
   bool is_just_seen = false;  // for so short that it may be nothing
+  bool is_known = false;      // its track is confirmed and old enough: one scan is enough
   Utime first = {};           // seen
   Utime seen = {};            // last
   Eigen::Vector2d place_map_m = Eigen::Vector2d::Constant(kNan);

@@ -65,6 +65,7 @@ struct InZone {
   const Track* track = nullptr;      // the nearest
   int num_tracks = 0;
   bool is_certain = false;
+  bool is_known = false;  // one of the tracks has been seen for long enough
   double probability = 0.0;
 
   void Add(const NearestPoint& point, const Track* of, bool is_certain_one, double with_probability) {
@@ -87,6 +88,7 @@ Danger DangerOf(std::int64_t thing, const InZone& found, const std::vector<Neare
                 .bearing_rad = nearest.bearing_rad,
                 .is_grave = !own || !own->velocity_map_mps.allFinite(),
                 .is_just_seen = own && !found.is_certain,
+                .is_known = found.is_known,
                 .place_map_m = nearest.position_map_m};
   if (found.track != nullptr) {
     danger.nearest_track = found.track->id;
@@ -262,6 +264,8 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
       const auto nearest = NearestWithin(params.bearing, InVessel(track.outline_m, *own), true);
       const auto thing = things.ThingOf(track.id);
       add(thing, nearest, &track);
+      const bool is_known = track.status == TrackStatus::kConfirmed && !Proof::IsYoung(track, time);
+      if (is_known && nearest && nearest->range_m <= params.range_m) in_zone[thing].is_known = true;
       if (thing == kLandTrack && nearest) shore.Add(*nearest);
     }
   }

@@ -28,6 +28,7 @@ namespace lookout::tracker {
 /// To be in the zone is worth a look. To act on is what comes nearer than the limit (ClosestApproachDangers); only where the own pose or velocity is
 /// not known, so that nobody can tell, the zone warns.
 ///
+/// A confirmed track that has been followed for a second, and whose outline by the tracker is in the zone, is known: no scan need say so twice.
 /// What is no confirmed track yet is just seen: crests are sure in single scans, too. A tentative track counts where it is likely to be a thing, and
 /// what has no track where it has stayed for 0.8 s.
 /// @param own        placed, at the end of the scan

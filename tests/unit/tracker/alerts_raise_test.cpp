@@ -28,6 +28,16 @@ TEST_F(AlertsTest, ComeUpInThreeOfFiveScans) {
   EXPECT_EQ(raised[0].cpa_probability, 0.5);
 }
 
+TEST_F(AlertsTest, ComeUpAtOnceWhereAKnownTrackEntersTheZone) {
+  auto known = Zone(7);
+  known.is_known = true;
+  EXPECT_EQ(Scan({known}).size(), 1U);
+  Scans(40, {});
+  EXPECT_TRUE(alerts_.alerts().empty());
+  known.probability = 0.4;
+  EXPECT_TRUE(Scan({known}).empty());
+}
+
 TEST_F(AlertsTest, DoNotComeUpInTwoOfFiveOrBelowOneHalf) {
   for (int i = 0; i < 20; ++i) {
     Scans(2, {Cpa(7, 0.9)});

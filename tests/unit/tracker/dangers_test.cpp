@@ -86,6 +86,26 @@ TEST(GuardZoneDangers, AreTentativeOnlyWhereTheZoneTakesThem) {
   EXPECT_EQ(GuardZoneDangers(all, picture, {}, Own()).size(), 2U);
 }
 
+TEST(GuardZoneDangers, AreKnownOfATrackThatIsSeenForASecond) {
+  const Utime now{std::chrono::seconds(1000)};
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 6.0})};
+  const auto is_known = [&](const std::vector<VesselOutline>& outlines = {}) {
+    const auto dangers = GuardZoneDangers(kZone, picture, outlines, Own(), {}, nullptr, now);
+    return dangers.size() == 1 && dangers.front().is_known;
+  };
+  picture.tracks[0].first = now - std::chrono::milliseconds(900);
+  EXPECT_FALSE(is_known());
+  picture.tracks[0].first = now - std::chrono::milliseconds(1000);
+  EXPECT_TRUE(is_known());
+  picture.tracks[0].status = TrackStatus::kCoasting;
+  EXPECT_FALSE(is_known()) << "it is not seen now";
+  // Its segment reaches into the zone in one scan, as with a crest before it.
+  picture.tracks = {At(1, {0.0, 12.0})};
+  picture.tracks[0].segment_ids = {4};
+  EXPECT_FALSE(is_known({Ahead(4, 9.5)}));
+}
+
 TEST(GuardZoneDangers, OfLandAreOne) {
   Picture picture;
   auto remembered = Land(8, {{7.0, -20.0}, {7.0, 20.0}});
