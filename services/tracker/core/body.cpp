@@ -72,9 +72,10 @@ constexpr double kSpeedSdsOn = 1.5;
 constexpr double kMovesAfterS = 0.6;
 // Deviation of the velocity of what is elsewhere than it was expected. It is rather another part of the same thing, since waves show one and hide the
 // other, than a motion; what goes on the same way moves. Chosen on seeds 21 to 24 of the own scenes.
-constexpr double kJumpMps = 0.3;
+constexpr double kJumpMps = 0.1;
 constexpr double kGoesOnMps = 1.0;
 
+constexpr std::size_t kMostParts = 3;  // beside the one that is seen
 // Where less than all is seen, it is a part: by so many deviations, and by a share of the size.
 constexpr double kPartSds = 2.0;
 constexpr double kPartShare = 0.15;
@@ -120,23 +121,31 @@ Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const S
     measured.kind[i] = is_edge ? Measured::Kind::kEdge : Measured::Kind::kAtLeast;
   }
   measured.sight = sight;
+  return measured;
+}
+
+// Whether less is seen than is known of this part.
+Body::Measured Body::MeasuredBy(Measured measured, const Reaches& known) const {
+  measured.short_m = 0.0;
   for (std::size_t i = 0; i < kDirections / 2; ++i) {
     const std::size_t j = Opposite(i);
-    if (measured.kind[i] != Measured::Kind::kEdge || measured.kind[j] != Measured::Kind::kEdge || !sides_[i].is_seen || !sides_[j].is_seen) continue;
-    const double known_m = sides_[i].reach_m + sides_[j].reach_m;
-    const double sd_m = std::sqrt(measured.variance_m2[i] + measured.variance_m2[j] + sides_[i].variance_m2 + sides_[j].variance_m2);
+    if (measured.kind[i] != Measured::Kind::kEdge || measured.kind[j] != Measured::Kind::kEdge || !known[i].is_seen || !known[j].is_seen) continue;
+    const double known_m = known[i].reach_m + known[j].reach_m;
+    const double sd_m = std::sqrt(measured.variance_m2[i] + measured.variance_m2[j] + known[i].variance_m2 + known[j].variance_m2);
     const double short_m = known_m - measured.reach_m[i] - measured.reach_m[j];
     if (short_m > kPartSds * sd_m + kPartShare * known_m) measured.short_m = std::max(measured.short_m, short_m);
   }
   return measured;
 }
 
-Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) {
+struct Body::First {
+  Eigen::Vector2d middle_m;
+  Reaches sides;  // from there
+};
+
+Body::First Body::FirstOutline(const Measured& measured, const std::vector<Eigen::Vector2d>& seen_m) const {
   const auto directions = SideDirections();
-  const Measured measured = Measure(seen_m, sides, range_m);
-  Eigen::Vector2d sight = Eigen::Vector2d::Zero();
-  for (const auto& corner : seen_m) sight += (corner - sides.from_m) / static_cast<double>(seen_m.size());
-  if (const double distance = sight.norm(); distance > 0.0) sight /= distance;
+  const Eigen::Vector2d& sight = measured.sight;
   const Eigen::Vector2d across(-sight.y(), sight.x());
   Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d most = -least;
@@ -147,21 +156,27 @@ Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const
   }
   const double width = most.y() - least.y();
   const double depth = std::max(most.x() - least.x(), std::clamp(width, kLeastDepthM, kGreatestAssumedDepthM));
-  const Eigen::Vector2d middle = (least.x() + 0.5 * depth) * sight + 0.5 * (least.y() + most.y()) * across;
-  standing_ = first_m_ = middle;
+  First first{(least.x() + 0.5 * depth) * sight + 0.5 * (least.y() + most.y()) * across, {}};
   for (std::size_t i = 0; i < kDirections; ++i) {
-    const double seen_reach = measured.reach_m[i] - directions[i].dot(middle);
+    const double seen_reach = measured.reach_m[i] - directions[i].dot(first.middle_m);
     if (measured.kind[i] == Measured::Kind::kEdge) {
-      sides_[i] = {seen_reach, measured.variance_m2[i], true};
+      first.sides[i] = {seen_reach, measured.variance_m2[i], true};
     } else {
       const double assumed = 0.5 * depth * std::abs(directions[i].dot(sight)) + 0.5 * width * std::abs(directions[i].dot(across));
       const double sd = kFarSdM + kFarSdPerWidth * std::min(width, kWidestBeamM);  // a boat seen from astern is much longer
-      sides_[i] = {std::max(seen_reach, assumed), sd * sd, false};
+      first.sides[i] = {std::max(seen_reach, assumed), sd * sd, false};
     }
   }
+  return first;
+}
+
+Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) {
+  const auto first = FirstOutline(Measure(seen_m, sides, range_m), seen_m);
+  standing_ = first_m_ = first.middle_m;
+  sides_ = first.sides;
   // The position is where the sides are counted from: it is known, the sides are not.
   standing_m2_ = Eigen::Matrix2d::Identity() * kLeastJitterM2 + NoiseOf(noise_m2, range_m);
-  moving_ << middle, Eigen::Vector2d::Zero(), 0.0;
+  moving_ << first.middle_m, Eigen::Vector2d::Zero(), 0.0;
   moving_covariance_.setZero();
   moving_covariance_.topLeftCorner<2, 2>() = standing_m2_;
   moving_covariance_.block<2, 2>(2, 2) = Eigen::Matrix2d::Identity() * kFirstSpeedMps * kFirstSpeedMps;
@@ -199,6 +214,9 @@ void Body::Predict(double dt_s) {
   }
   moving_covariance_(4, 4) += (1.0 - kept * kept) * kTurnRateRadps * kTurnRateRadps;
   for (auto& side : sides_) side.variance_m2 += kSideWanderM2PerS * dt_s;
+  for (auto& part : others_) {
+    for (auto& side : part.sides) side.variance_m2 += kSideWanderM2PerS * dt_s;
+  }
   log_likelihood_ratio_ *= std::max(0.0, 1.0 - dt_s / kMotionMemoryS);
   since_update_s_ += dt_s;
   age_s_ += dt_s;
@@ -207,10 +225,31 @@ void Body::Predict(double dt_s) {
 Eigen::Vector2d Body::position_m() const { return prefers_moving_ ? Eigen::Vector2d(moving_.head<2>()) : standing_; }
 
 Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const {
-  return ShiftOf(Measure(seen_m, sides, range_m), noise_m2, range_m);
+  const auto measured = Measure(seen_m, sides, range_m);
+  const auto part = PartOf(measured, noise_m2, range_m);
+  const auto& known = part ? others_[*part].sides : sides_;
+  return ShiftOf(MeasuredBy(measured, known), known, noise_m2, range_m);
 }
 
-Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const {
+std::optional<std::size_t> Body::PartOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const {
+  constexpr double kOfLess = 2.0;  // less of one part is rather all of another
+  const auto off_by = [&](const Reaches& known) {
+    const auto shift = ShiftOf(MeasuredBy(measured, known), known, noise_m2, range_m);
+    return shift.off + shift.misfit + (shift.is_part ? kOfLess : 0.0);
+  };
+  std::optional<std::size_t> best;
+  if (others_.empty()) return best;
+  double least = off_by(sides_);
+  for (std::size_t k = 0; k < others_.size(); ++k) {
+    const double off = off_by(others_[k].sides);
+    if (off >= least) continue;
+    least = off;
+    best = k;
+  }
+  return best;
+}
+
+Body::Shift Body::ShiftOf(const Measured& measured, const Reaches& known, const Eigen::Matrix2d& noise_m2, double range_m) const {
   const auto directions = SideDirections();
   const Eigen::Vector2d position = position_m();
   constexpr double kNothing = 1e-6;  // 1/m2, where no side is an edge
@@ -227,17 +266,16 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise
     for (std::size_t i = 0; i < kDirections; ++i) {
       const std::size_t j = Opposite(i);
       if (measured.kind[i] != Measured::Kind::kEdge || measured.kind[j] != Measured::Kind::kEdge) continue;
-      const double off_m =
-          0.5 * ((measured.reach_m[i] - sides_[i].reach_m) - (measured.reach_m[j] - sides_[j].reach_m)) - directions[i].dot(position);
+      const double off_m = 0.5 * ((measured.reach_m[i] - known[i].reach_m) - (measured.reach_m[j] - known[j].reach_m)) - directions[i].dot(position);
       off += off_m * directions[i];
       ++num_pairs;
     }
     sum = weight / num_pairs * off;
   }
   for (std::size_t i = 0; i < kDirections; ++i) {
-    const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - sides_[i].reach_m;
+    const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - known[i].reach_m;
     if (!measured.Tells(i, beyond_m)) continue;
-    const double weight = 1.0 / (measured.variance_m2[i] + sides_[i].variance_m2);
+    const double weight = 1.0 / (measured.variance_m2[i] + known[i].variance_m2);
     information += weight * directions[i] * directions[i].transpose();
     sum += weight * beyond_m * directions[i];
     ++num_edges;
@@ -247,10 +285,10 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise
   const double times = std::max(1.0, 0.5 * num_edges);
   Shift shift{covariance * sum, covariance * times + Eigen::Matrix2d::Identity() * jitter_m2_ + NoiseOf(noise_m2, range_m), 0.0, 0.0};
   for (std::size_t i = 0; i < kDirections; ++i) {
-    const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - sides_[i].reach_m;
+    const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - known[i].reach_m;
     if (!measured.Tells(i, beyond_m)) continue;
     const double left = beyond_m - directions[i].dot(shift.shift_m);
-    shift.misfit += left * left / (measured.variance_m2[i] + sides_[i].variance_m2 + jitter_m2_) / num_edges;
+    shift.misfit += left * left / (measured.variance_m2[i] + known[i].variance_m2 + jitter_m2_) / num_edges;
   }
   shift.is_part = measured.short_m > 0.0;
   const auto off_by = [](const Eigen::Vector2d& off, const Eigen::Matrix2d& spread) { return off.dot(spread.inverse() * off); };
@@ -273,11 +311,19 @@ double Body::outline_sd_m() const {
 
 void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows) {
   const auto directions = SideDirections();
-  const Measured measured = Measure(seen_m, sides, range_m);
-  const Shift shift = ShiftOf(measured, noise_m2, range_m);
+  Measured measured = Measure(seen_m, sides, range_m);
+  if (const auto part = PartOf(measured, noise_m2, range_m)) {
+    std::swap(sides_, others_[*part].sides);
+    others_[*part].unseen_s = 0.0;
+    num_measured_ = 0;
+    parts_s_ = 0.0;
+  }
+  measured = MeasuredBy(measured, sides_);
+  const Shift shift = ShiftOf(measured, sides_, noise_m2, range_m);
   const Eigen::Vector2d measured_m = position_m() + shift.shift_m;
   const double dt_s = std::max(since_update_s_, 0.01);
   since_update_s_ = 0.0;
+  ForgetParts(dt_s);
 
   if (measured.short_m > 0.0) num_measured_ = 0;
   if (num_measured_ >= 2) {
@@ -381,14 +427,12 @@ void Body::Fade(double dt_s) {
   prefers_moving_ = false;
 }
 
-void Body::MoveAs(const Body& before) { MoveAs(before, kJumpMps); }
-
-void Body::MoveAs(const Body& before, double jump_mps) {
+void Body::MoveAs(const Body& before) {
   moving_.tail<3>() = before.moving_.tail<3>();
   moving_covariance_.bottomRightCorner<3, 3>() = before.moving_covariance_.bottomRightCorner<3, 3>();
   moving_covariance_.block<2, 3>(0, 2).setZero();
   moving_covariance_.block<3, 2>(2, 0).setZero();
-  moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
+  moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (kJumpMps * kJumpMps);
   if (before.prefers_moving_ && !prefers_moving_) {
     moving_.head<2>() = standing_;
     parts_s_ = 0.0;
@@ -402,30 +446,22 @@ void Body::MoveAs(const Body& before, double jump_mps) {
   jitter_m2_ = before.jitter_m2_;
 }
 
-void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
-  // What is known to move shows another part of itself, unless it was not where it should be.
+void Body::AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
   const Measured measured = Measure(seen_m, sides, range_m);
-  const Eigen::Vector2d jump_m = ShiftOf(measured, Eigen::Matrix2d::Zero(), range_m).shift_m;
+  const auto first = FirstOutline(measured, seen_m);
+  // What is known to move shows another part of itself, unless it was not where it should be.
+  const Eigen::Vector2d jump_m = first.middle_m - center_m();
   const bool goes_on = jump_m.dot(last_jump_m_) > 0.0;
   last_jump_m_ = jump_m;
   const double jump_mps = has_jumped || !prefers_moving_ ? (goes_on ? kGoesOnMps : kJumpMps) : 0.0;
-  if (measured.short_m > 0.0) {
-    standing_ += jump_m;
-    moving_.head<2>() += jump_m;
-    moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
-    num_measured_ = 0;
-    parts_s_ = since_update_s_ = 0.0;
-    return;
-  }
-  Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
-  other.MoveAs(*this, jump_mps);
-  // What is fixed to the thing stays where it is.
-  const Eigen::Isometry2d frame = Frame();
-  other.first_m_ = first_m_;
-  other.last_jump_m_ = jump_m;
-  other.frame_turned_ = frame.linear();
-  other.centered_m_ = frame.linear().transpose() * (other.position_m() - frame.translation());
-  *this = other;
+  moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
+  if (others_.size() == kMostParts) others_.erase(std::ranges::max_element(others_, {}, &Part::unseen_s));
+  others_.push_back({sides_, 0.0});
+  sides_ = first.sides;
+  const auto directions = SideDirections();
+  for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m += directions[i].dot(first.middle_m - position_m());
+  num_measured_ = 0;
+  parts_s_ = since_update_s_ = 0.0;
 }
 
 Eigen::Vector2d Body::center_m() const { return position_m() + middle_m(); }
@@ -434,8 +470,9 @@ Eigen::Matrix4d Body::covariance() const {
   constexpr std::size_t kNorth = kDirections / 4;
   Eigen::Matrix4d covariance = moving_covariance_.topLeftCorner<4, 4>();
   if (!prefers_moving_) covariance.topLeftCorner<2, 2>() = standing_m2_;
-  const Eigen::Vector2d middle_m2(0.25 * (sides_[0].variance_m2 + sides_[Opposite(0)].variance_m2),
-                                  0.25 * (sides_[kNorth].variance_m2 + sides_[Opposite(kNorth)].variance_m2));
+  const auto whole = WholeSides();
+  const Eigen::Vector2d middle_m2(0.25 * (whole[0].variance_m2 + whole[Opposite(0)].variance_m2),
+                                  0.25 * (whole[kNorth].variance_m2 + whole[Opposite(kNorth)].variance_m2));
   covariance.bottomRightCorner<2, 2>() = velocity_covariance();
   const double never_seen_m = kNeverSeenSdM + kNeverSeenSdPerSize * size_m();
   covariance.topLeftCorner<2, 2>() += Eigen::Matrix2d::Identity() * (never_seen_m * never_seen_m);

@@ -1,4 +1,4 @@
-// How one thing moves, and how far it reaches: two motion hypotheses over one outline.
+// How one thing moves, and how far it reaches: two motion hypotheses over the parts that are seen of it.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -23,6 +23,10 @@ struct Sides {
 /// A measurement is compared side by side: how far the seen outline reaches in each direction from which it is seen, against how far the known one
 /// does from the predicted position. So more or less of a thing in sight is no motion, and the side that is seen does not draw the centre towards the
 /// boat. Where the sides do not agree, it counts the less.
+///
+/// A thing has parts that are seen by turns, as the bow of a kayak and who sits in it. Each has its own sides, counted from the one position. A
+/// measurement is compared with the part that it fits best, so a change of part is no motion, and the outline is that around all parts. A part that
+/// was not seen for 6 s, while others were, is forgotten.
 ///
 /// What is seen of a thing changes over seconds, not from scan to scan: errors of the outline are taken as such, for the covariance to be honest.
 class Body {
@@ -65,9 +69,9 @@ class Body {
   void Include(const std::vector<Eigen::Vector2d>& outline_m);
   /// It is what was followed as another before: where and how large it is stays, how it moves is taken from there, less sure.
   void MoveAs(const Body& before);
-  /// Another outline of the same thing: it keeps its velocity.
-  /// @param has_jumped  it was not where it should be: its velocity is less sure, too
-  void Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped);
+  /// Another part of the same thing is seen: where it is and how it moves stays, since what else is seen says nothing of that.
+  /// @param has_jumped  it was not where it should be: the velocity is less sure
+  void AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped);
 
   /// Of the hypothesis that holds: moving where its probability is above the threshold.
   bool IsMoving(double threshold) const { return moving_probability_ > threshold; }
@@ -86,9 +90,22 @@ class Body {
     double variance_m2 = 0.0;
     bool is_seen = false;
   };
+  using Reaches = std::array<Side, kDirections>;
+  // What is seen of a thing by itself, as its bow, or its crew.
+  struct Part {
+    Reaches sides;
+    double unseen_s = 0.0;  // for how long others were seen
+  };
   struct Measured;
   Measured Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const;
-  Shift ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const;
+  Measured MeasuredBy(Measured measured, const Reaches& known) const;
+  Shift ShiftOf(const Measured& measured, const Reaches& known, const Eigen::Matrix2d& noise_m2, double range_m) const;
+  // Which of the others is seen; nullopt: the one that was seen last.
+  std::optional<std::size_t> PartOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const;
+  Reaches WholeSides() const;
+  void ForgetParts(double dt_s);
+  struct First;
+  First FirstOutline(const Measured& measured, const std::vector<Eigen::Vector2d>& seen_m) const;
   Eigen::Vector2d position_m() const;
   Eigen::Vector2d middle_m() const;  // of the outline, from the position
   Directions SideDirections() const;
@@ -98,11 +115,11 @@ class Body {
   double outline_sd_m() const;
   Eigen::Matrix2d velocity_covariance() const;
   void Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s);
-  void MoveAs(const Body& before, double jump_mps);
   void AssumeBy(const Measured& measured);
   void TakePart(const Measured& measured, double dt_s);
 
-  std::array<Side, kDirections> sides_;
+  Reaches sides_;                                          // of the part that was seen last, from the position
+  std::vector<Part> others_;                               // parts that were seen before
   Eigen::Matrix2d turned_ = Eigen::Matrix2d::Identity();   // of the sides' directions, from those of the compass: a boat that turns takes them along
   Eigen::Vector2d first_m_ = Eigen::Vector2d::Zero();      // the position at first
   Eigen::Vector2d last_jump_m_ = Eigen::Vector2d::Zero();  // when an outline did not fit: from where it was expected

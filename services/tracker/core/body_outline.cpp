@@ -14,6 +14,7 @@ constexpr double kBoatLengthPerBeam = 2.7;  // small craft: 2.3 to 3.5
 constexpr double kLongestAssumedM = 12.0;
 constexpr double kLongestStepS = 0.2;
 constexpr double kPartsForS = 3.0;  // after so long what was seen in that time is all of it
+constexpr double kPartForgottenS = 6.0;
 constexpr double kGreatestOutlineSizeM = 10.0;
 
 }  // namespace
@@ -34,7 +35,10 @@ Support Body::SupportFrom(const std::vector<Eigen::Vector2d>& corners_m) const {
 void Body::Center() {
   const auto directions = SideDirections();
   const Eigen::Vector2d middle = middle_m();
-  for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m -= directions[i].dot(middle);
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    sides_[i].reach_m -= directions[i].dot(middle);
+    for (auto& part : others_) part.sides[i].reach_m -= directions[i].dot(middle);
+  }
   standing_ += middle;
   moving_.head<2>() += middle;
   centered_m_ += (turned_ * frame_turned_).transpose() * middle;
@@ -42,8 +46,9 @@ void Body::Center() {
 }
 
 double Body::size_m() const {
+  const auto whole = WholeSides();
   double size_m = 0.0;
-  for (std::size_t i = 0; i < kDirections / 2; ++i) size_m = std::max(size_m, sides_[i].reach_m + sides_[Opposite(i)].reach_m);
+  for (std::size_t i = 0; i < kDirections / 2; ++i) size_m = std::max(size_m, whole[i].reach_m + whole[Opposite(i)].reach_m);
   return std::min(size_m, kGreatestOutlineSizeM);
 }
 
@@ -98,8 +103,9 @@ void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
 }
 
 std::vector<Eigen::Vector2d> Body::Outline() const {
+  const auto whole = WholeSides();
   Support support;
-  for (std::size_t i = 0; i < kDirections; ++i) support[i] = sides_[i].reach_m;
+  for (std::size_t i = 0; i < kDirections; ++i) support[i] = whole[i].reach_m;
   auto corners = Polygon(support);
   const Eigen::Vector2d position = position_m();
   for (auto& corner : corners) corner = turned_ * corner + position;
@@ -113,12 +119,32 @@ Eigen::Isometry2d Body::Frame() const {
   return frame;
 }
 
-double Body::SeenShare() const { return static_cast<double>(std::ranges::count_if(sides_, &Side::is_seen)) / static_cast<double>(kDirections); }
+double Body::SeenShare() const {
+  const auto whole = WholeSides();
+  return static_cast<double>(std::ranges::count_if(whole, &Side::is_seen)) / static_cast<double>(kDirections);
+}
+
+// Of all parts the one that reaches farthest.
+Body::Reaches Body::WholeSides() const {
+  Reaches whole = sides_;
+  for (const auto& part : others_) {
+    for (std::size_t i = 0; i < kDirections; ++i) {
+      if (part.sides[i].reach_m > whole[i].reach_m) whole[i] = part.sides[i];
+    }
+  }
+  return whole;
+}
+
+void Body::ForgetParts(double dt_s) {
+  for (auto& part : others_) part.unseen_s += std::min(dt_s, kLongestStepS);
+  std::erase_if(others_, [](const Part& part) { return part.unseen_s > kPartForgottenS; });
+}
 
 Eigen::Vector2d Body::middle_m() const {
   constexpr std::size_t kNorth = kDirections / 4;
+  const auto whole = WholeSides();
   return turned_ *
-         Eigen::Vector2d(0.5 * (sides_[0].reach_m - sides_[Opposite(0)].reach_m), 0.5 * (sides_[kNorth].reach_m - sides_[Opposite(kNorth)].reach_m));
+         Eigen::Vector2d(0.5 * (whole[0].reach_m - whole[Opposite(0)].reach_m), 0.5 * (whole[kNorth].reach_m - whole[Opposite(kNorth)].reach_m));
 }
 
 }  // namespace lookout::tracker

@@ -7,10 +7,10 @@ namespace lookout::tracker {
 
 namespace {
 
-// A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
+// A seen outline that is farther off, or fits worse, is that of something else too, or of another part: it moves nothing. After so many it is a part.
 constexpr double kMostOff = 16.0;
 constexpr double kMostMisfit = 9.0;
-constexpr int kMisfitsToRestart = 3;
+constexpr int kMisfitsToAddPart = 3;
 constexpr double kMovesProbability = 0.95;
 
 double RadiusOf(const std::vector<Eigen::Vector2d>& outline_m, const Eigen::Vector2d& middle_m) {
@@ -46,9 +46,9 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
   if (shift.off < kMostOff && shift.misfit < kMostMisfit) {
     track.num_misfits = 0;
     track.body->Update(seen.outline_m, sides, seen.covariance_relative_m2, sighting.range_m, grows);
-  } else if (++track.num_misfits >= kMisfitsToRestart) {
+  } else if (++track.num_misfits >= kMisfitsToAddPart) {
     track.num_misfits = 0;
-    track.body->Restart(seen.outline_m, sides, sighting.range_m, shift.off >= kMostOff && !shift.is_part);
+    track.body->AddPart(seen.outline_m, sides, sighting.range_m, shift.off >= kMostOff && !shift.is_part);
   }
   Place(track);
 }

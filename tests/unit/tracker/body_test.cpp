@@ -127,6 +127,38 @@ TEST(Body, OfWhichAPartIsSeenStands) {
   EXPECT_LT(length_of(body), 3.0);
 }
 
+// Bow and paddler of a kayak, each for a second.
+TEST(Body, OfWhichTwoPartsAreSeenByTurnsStandsOrMovesAndKeepsBoth) {
+  for (const double speed_mps : {0.0, 1.5}) {
+    SCOPED_TRACE(speed_mps);
+    std::mt19937_64 random(6);
+    const Eigen::Vector2d from_m = Eigen::Vector2d::Zero();
+    const Eigen::Matrix2d noise_m2 = Eigen::Matrix2d::Identity() * 1e-4;
+    Box bow{.middle_m = {-8.0, 20.0}, .length_m = 1.2, .width_m = 0.5};
+    Box paddler{.middle_m = {-10.0, 20.0}, .length_m = 0.5, .width_m = 0.5};
+    Body body(bow.SeenFrom(from_m), {.from_m = from_m}, noise_m2, 20.0);
+    const auto look = [&](int scan, bool is_bow) {
+      bow.middle_m.x() += speed_mps * kScanS;
+      paddler.middle_m.x() += speed_mps * kScanS;
+      const auto seen_m = Shaken((is_bow ? bow : paddler).SeenFrom(from_m), 0.02, random);
+      body.Predict(kScanS);
+      if (scan == 20) body.AddPart(seen_m, {.from_m = from_m}, 20.0, true);
+      if (scan != 20) body.Update(seen_m, {.from_m = from_m}, noise_m2, 20.0, true);
+    };
+    for (int scan = 0; scan < 100; ++scan) {
+      look(scan, scan < 20 || (scan / 10) % 2 == 1);
+      EXPECT_TRUE(speed_mps > 0.0 || !body.IsMoving(kMoving)) << scan;
+      if (speed_mps == 0.0 || scan < 40) continue;
+      EXPECT_LT((body.velocity_mps() - Eigen::Vector2d(speed_mps, 0.0)).norm(), 0.4) << scan;
+    }
+    EXPECT_TRUE(Contains(body.Outline(), bow.middle_m));
+    EXPECT_TRUE(Contains(body.Outline(), paddler.middle_m));
+    // What is not seen for long while the other is was no part of it.
+    for (int scan = 100; scan < 170; ++scan) look(scan, true);
+    EXPECT_FALSE(Contains(body.Outline(), paddler.middle_m));
+  }
+}
+
 TEST(Body, ThatPassesByKeepsItsCentre) {
   std::mt19937_64 random(3);
   Box box{{-25.0, 12.0}, 0.0};
@@ -237,7 +269,7 @@ TEST(Body, FrameStaysWhereTheOutlineIsAnother) {
   const Eigen::Isometry2d before = body.Frame();
   const double moved_m = body.moved_m();
   box.length_m = 9.0;
-  body.Restart(box.SeenFrom({0.0, 0.0}), {}, 20.0, false);
+  body.AddPart(box.SeenFrom({0.0, 0.0}), {}, 20.0, false);
   EXPECT_NEAR(body.moved_m(), moved_m, 1e-9);
   EXPECT_LT((body.Frame().translation() - before.translation()).norm(), 1e-9);
 }
@@ -324,7 +356,7 @@ TEST(Body, FrameKeepsItsTurnWhereTheOutlineIsAnother) {
   const Eigen::Isometry2d before = body.Frame();
   const double moved_m = body.moved_m();
   box.length_m = 9.0;
-  body.Restart(box.SeenFrom({0.0, 0.0}), {}, 20.0, false);
+  body.AddPart(box.SeenFrom({0.0, 0.0}), {}, 20.0, false);
   EXPECT_NEAR(body.moved_m(), moved_m, 1e-9);
   EXPECT_TRUE(body.Frame().translation().isApprox(before.translation(), 1e-9));
   EXPECT_TRUE(body.Frame().linear().isApprox(before.linear(), 1e-9)) << body.Frame().linear() << "\n" << before.linear();
