@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "common/core/convex.hpp"
 #include "common/core/elementary.hpp"
 
 namespace lookout {
@@ -18,7 +19,6 @@ Eigen::Vector2d DirectionOf(double bearing_rad) {
   return {cosine, -sine};
 }
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // The nearest of some points and edges within a sector.
 class NearestFinder {

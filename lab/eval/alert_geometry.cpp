@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/convex.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -19,8 +20,6 @@ constexpr double kTurnsFromRadps = DegToRad(1.5);
 constexpr double kEndOfTurnRad = DegToRad(60.0);
 constexpr double kStepS = 0.1;
 
-double CrossOf(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 Vector2d NearestOnEdge(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
   const Vector2d edge = b - a;
   const double length2 = edge.squaredNorm();
@@ -30,10 +29,10 @@ Vector2d NearestOnEdge(const Vector2d& p, const Vector2d& a, const Vector2d& b) 
 
 // Squared; 0 where they cross.
 double EdgeGap2(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
-  const double side_c = CrossOf(b - a, c - a);
-  const double side_d = CrossOf(b - a, d - a);
-  const double side_a = CrossOf(d - c, a - c);
-  const double side_b = CrossOf(d - c, b - c);
+  const double side_c = Cross(b - a, c - a);
+  const double side_d = Cross(b - a, d - a);
+  const double side_a = Cross(d - c, a - c);
+  const double side_b = Cross(d - c, b - c);
   if (side_c * side_d < 0.0 && side_a * side_b < 0.0) return 0.0;
   return std::min({(NearestOnEdge(a, c, d) - a).squaredNorm(), (NearestOnEdge(b, c, d) - b).squaredNorm(), (NearestOnEdge(c, a, b) - c).squaredNorm(),
                    (NearestOnEdge(d, a, b) - d).squaredNorm()});

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lab/eval/track_assignment.hpp"
+#include "common/core/assignment.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "common/core/angles.hpp"
+#include "common/core/convex.hpp"
 #include "common/core/frames.hpp"
 
 namespace lookout::eval {
@@ -24,25 +25,6 @@ constexpr std::size_t kMinObjects = 3;
 constexpr int kMostTimesReturns = 2;
 // As georeferencer: below it an outline counts as a line.
 constexpr double kMinAreaRatio = 1e-4;
-
-double Cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-// By the monotone chain (Andrew 1979), counter-clockwise.
-std::vector<Vector2d> Hull(std::vector<Vector2d> points) {
-  std::ranges::sort(points, {}, [](const Vector2d& p) { return std::pair(p.x(), p.y()); });
-  std::vector<Vector2d> hull;
-  const auto add_all = [&hull](auto first, auto last) {
-    const std::size_t begin = hull.size();
-    for (; first != last; ++first) {
-      while (hull.size() >= begin + 2 && Cross(hull.back() - hull[hull.size() - 2], *first - hull[hull.size() - 2]) <= 0.0) hull.pop_back();
-      hull.push_back(*first);
-    }
-    if (hull.size() > begin + 1) hull.pop_back();  // it begins the other half
-  };
-  add_all(points.begin(), points.end());
-  if (points.size() > 1) add_all(points.rbegin(), points.rend());
-  return hull;
-}
 
 Vector2d Center(const std::vector<Vector2d>& hull) {
   const Vector2d& origin = hull.front();
@@ -101,7 +83,7 @@ std::optional<Vector2d> TrueCenter(std::span<const SeenReturn> returns, const Is
     const Eigen::Vector3d p_map_m = *T_map_vessel * T_vessel_lidar * seen.p_lidar_m;
     points.emplace_back(p_map_m.head<2>());
   }
-  return Center(Hull(std::move(points)));
+  return Center(ConvexHull(std::move(points)));
 }
 
 SeenSummary Summarise(std::span<const SeenObstacle> obstacles, const std::function<bool(const SeenObstacle&)>& is_meant) {

@@ -22,7 +22,7 @@
 #include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "lab/eval/figures.hpp"
-#include "lab/eval/track_assignment.hpp"
+#include "common/core/assignment.hpp"
 #include "lab/eval/track_command.hpp"
 #include "lab/eval/track_run.hpp"
 #include "lab/eval/track_sources.hpp"

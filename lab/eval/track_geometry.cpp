@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/convex.hpp"
+
 namespace lookout::eval {
 namespace {
 
 using Eigen::Vector2d;
-
-double Cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 Eigen::AlignedBox2d BoxOf(const Polygon& polygon_m) {
   Eigen::AlignedBox2d box_m;
@@ -64,29 +64,12 @@ double HullGap(const Polygon& one_m, const Polygon& other_m, double enough_m) {
   return gap_m;
 }
 
-// Andrew's monotone chain.
-Polygon ConvexHullOf(Polygon points_m) {
-  std::ranges::sort(points_m, {}, [](const Vector2d& p_m) { return std::pair(p_m.x(), p_m.y()); });
-  points_m.erase(std::unique(points_m.begin(), points_m.end()), points_m.end());
-  if (points_m.size() < 3) return points_m;
-  Polygon hull_m;
-  const auto extend = [&](const Vector2d& p_m, std::size_t least) {
-    while (hull_m.size() > least && Cross(hull_m.back() - hull_m[hull_m.size() - 2], p_m - hull_m.back()) <= 0.0) hull_m.pop_back();
-    hull_m.push_back(p_m);
-  };
-  for (const auto& p_m : points_m) extend(p_m, 1);
-  const std::size_t lower = hull_m.size();
-  for (std::size_t i = points_m.size() - 1; i-- > 0;) extend(points_m[i], lower);
-  hull_m.pop_back();
-  return hull_m;
-}
-
 Approach ApproachOf(const Polygon& own_m, const Vector2d& own_mps, const Polygon& other_m, const Vector2d& other_mps) {
   constexpr double kSlowMps = 0.02;  // slower against each other than this nothing comes nearer
   constexpr double kTouchM = 1e-4;
   constexpr int kNumHalvings = 60;
-  const auto own_hull_m = ConvexHullOf(own_m);
-  const auto other_hull_m = ConvexHullOf(other_m);
+  const auto own_hull_m = ConvexHull(own_m);
+  const auto other_hull_m = ConvexHull(other_m);
   const Vector2d relative_mps = other_mps - own_mps;
   const auto gap_at = [&](double time_s) { return HullGap(own_hull_m, Moved(other_hull_m, relative_mps * time_s)); };
   if (relative_mps.norm() < kSlowMps) return {gap_at(0.0), 0.0};
@@ -116,24 +99,9 @@ Approach ApproachOf(const Polygon& own_m, const Vector2d& own_mps, const Polygon
 }
 
 double GapAfter(double seconds, const Polygon& own_m, const Vector2d& own_mps, const Polygon& other_m, const Vector2d& other_mps) {
-  return HullGap(ConvexHullOf(own_m), Moved(ConvexHullOf(other_m), (other_mps - own_mps) * seconds));
+  return HullGap(ConvexHull(own_m), Moved(ConvexHull(other_m), (other_mps - own_mps) * seconds));
 }
 
-Vector2d CenterOf(const Polygon& outline_m) {
-  const auto hull_m = ConvexHullOf(outline_m);
-  if (hull_m.size() < 3) return BoxOf(hull_m).center();
-  double least_m2 = std::numeric_limits<double>::infinity();
-  Vector2d center_m = hull_m.front();
-  for (std::size_t i = 0, before = hull_m.size() - 1; i < hull_m.size(); before = i++) {
-    const Vector2d along = (hull_m[i] - hull_m[before]).normalized();
-    const Vector2d across(-along.y(), along.x());
-    Eigen::AlignedBox2d box_m;
-    for (const auto& corner_m : hull_m) box_m.extend(Vector2d(along.dot(corner_m), across.dot(corner_m)));
-    if (box_m.volume() >= least_m2) continue;
-    least_m2 = box_m.volume();
-    center_m = along * box_m.center().x() + across * box_m.center().y();
-  }
-  return center_m;
-}
+Vector2d CenterOf(const Polygon& outline_m) { return RectangleAround(ConvexHull(outline_m)).center_m; }
 
 }  // namespace lookout::eval

@@ -12,9 +12,6 @@ namespace lookout::eval {
 /// the result is only more than that.
 double HullGap(const Polygon& one_m, const Polygon& other_m, double enough_m = 1e300);
 
-/// Of an outline that may be anything: its corners, counter-clockwise, none on a line between others.
-Polygon ConvexHullOf(Polygon points_m);
-
 struct Approach {
   double cpa_m = 0.0;
   double tcpa_s = 0.0;  // 0 where they part; where they will touch, the first time at which they do

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "lab/eval/track_assignment.hpp"
+#include "common/core/assignment.hpp"
 
 namespace lookout::eval {
 namespace {

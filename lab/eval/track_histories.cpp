@@ -11,6 +11,7 @@
 #include <set>
 
 #include "common/core/angles.hpp"
+#include "common/core/convex.hpp"
 #include "lab/eval/track_geometry.hpp"
 
 namespace lookout::eval {
@@ -71,7 +72,6 @@ class SeenSides {
   }
 
  private:
-  static double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
   template <typename Function>
   static void ForEachSide(const Polygon& outline_m, const Function& function) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "lab/eval/track_assignment.hpp"
+#include "common/core/assignment.hpp"
 #include "lab/eval/track_geometry.hpp"
 
 namespace lookout::eval {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "lab/eval/track_assignment.hpp"
+#include "common/core/assignment.hpp"
 #include "lab/eval/track_geometry.hpp"
 #include "lab/eval/track_histories.hpp"
 

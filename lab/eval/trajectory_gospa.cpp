@@ -10,7 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "lab/eval/track_assignment.hpp"
+#include "common/core/assignment.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/convex.hpp"
 
 namespace lookout::sim {
 
@@ -29,29 +30,6 @@ std::vector<Vector2d> OutlineOf(const HullPlan& plan) {
     if (p_m->y() < -1e-3) outline_m.emplace_back(p_m->x(), -p_m->y());
   }
   return outline_m;
-}
-
-// A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", Information Processing Letters 9, 1979.
-std::vector<Vector2d> ConvexHull(std::vector<Vector2d> points_m) {
-  std::ranges::sort(points_m, {}, [](const Vector2d& p_m) { return std::pair(p_m.x(), p_m.y()); });
-  constexpr double kFlatM2 = 1e-4;  // corners that stand out by less than millimetres are left out
-  const auto extend = [](std::vector<Vector2d>& chain_m, const Vector2d& p_m) {
-    while (chain_m.size() >= 2) {
-      const Vector2d last_m = chain_m.back() - chain_m[chain_m.size() - 2];
-      const Vector2d next_m = p_m - chain_m.back();
-      if (last_m.x() * next_m.y() - last_m.y() * next_m.x() > kFlatM2 * std::min(last_m.norm() + next_m.norm(), 1.0)) break;
-      chain_m.pop_back();
-    }
-    chain_m.push_back(p_m);
-  };
-  std::vector<Vector2d> lower_m;
-  for (const auto& p_m : points_m) extend(lower_m, p_m);
-  std::vector<Vector2d> upper_m;
-  for (auto p_m = points_m.rbegin(); p_m != points_m.rend(); ++p_m) extend(upper_m, *p_m);
-  lower_m.pop_back();
-  upper_m.pop_back();
-  lower_m.insert(lower_m.end(), upper_m.begin(), upper_m.end());
-  return lower_m;
 }
 
 int Model::Whole(int low, int high) { return low + std::min(static_cast<int>(random_.Uniform() * (high - low + 1)), high - low); }
@@ -163,7 +141,8 @@ void Model::OutlineAllParts() {
       for (const auto& around_m : Circle(p_m, bounds.radius_m / std::cos(kPi / 8.0), 8)) points_m.push_back(around_m);
     }
   }
-  object_.outline_m = ConvexHull(std::move(points_m));
+  constexpr double kFlatM2 = 1e-4;  // corners that stand out by less than millimetres are left out
+  object_.outline_m = ConvexHull(std::move(points_m), kFlatM2);
 }
 
 }  // namespace lookout::sim

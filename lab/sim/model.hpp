@@ -24,9 +24,6 @@ struct HullPlan {
 };
 std::vector<Eigen::Vector2d> OutlineOf(const HullPlan& plan);
 
-/// @return convex hull, counter-clockwise
-std::vector<Eigen::Vector2d> ConvexHull(std::vector<Eigen::Vector2d> points_m);
-
 /// Draws in two arguments of one call would depend on the compiler: at most one size and one material in each.
 class Model {
  public:

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/core/angles.hpp"
+#include "common/core/convex.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -17,8 +18,6 @@ constexpr double kStepS = 0.2;
 constexpr double kOwnHalfLengthM = 1.2;
 constexpr double kOwnHalfWidthM = 0.7;
 constexpr double kHeadroomM = 2.5;  // a man who stands on its deck, and a little more
-
-double Cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 double DistanceToEdgeM(const Vector2d& p_m, const Vector2d& from_m, const Vector2d& to_m) {
   const Vector2d edge_m = to_m - from_m;

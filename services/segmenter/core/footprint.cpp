@@ -8,15 +8,15 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/convex.hpp"
 #include "common/core/elementary.hpp"
 
 namespace lookout::segmenter {
 
 namespace {
 
-// Above 0 where the way from a over b to c turns left.
-double Turn(const FootprintPoint& a, const FootprintPoint& b, const FootprintPoint& c) {
-  return (static_cast<double>(b.x_m) - a.x_m) * (static_cast<double>(c.y_m) - a.y_m) -
+bool TurnsLeft(const FootprintPoint& a, const FootprintPoint& b, const FootprintPoint& c) {
+  return (static_cast<double>(b.x_m) - a.x_m) * (static_cast<double>(c.y_m) - a.y_m) >
          (static_cast<double>(b.y_m) - a.y_m) * (static_cast<double>(c.x_m) - a.x_m);
 }
 
@@ -105,23 +105,6 @@ const std::array<Direction, kMaxHullCorners>& Directions() {
 }
 
 double Along(const FootprintPoint& point, double x, double y) { return x * point.x_m + y * point.y_m; }
-
-// Corners counter-clockwise out of sorted points, each at a place of its own.
-void ChainHull(const std::vector<FootprintPoint>& points, std::vector<FootprintPoint>& hull) {
-  hull.clear();
-  if (points.size() < 3) {
-    hull = points;
-    return;
-  }
-  const auto extend = [&hull](const FootprintPoint& point, std::size_t min_size) {
-    while (hull.size() >= min_size && Turn(hull[hull.size() - 2], hull.back(), point) <= 0.0) hull.pop_back();
-    hull.push_back(point);
-  };
-  for (const auto& point : points) extend(point, 2);
-  const std::size_t lower_size = hull.size();
-  for (auto point = points.rbegin() + 1; point != points.rend(); ++point) extend(*point, lower_size + 1);
-  hull.pop_back();  // the first once more
-}
 
 void Simplify(std::vector<FootprintPoint>& hull, std::vector<bool>& is_kept) {
   if (hull.size() <= kMaxHullCorners) return;
@@ -242,7 +225,7 @@ std::vector<FootprintPoint> ConvexHull(std::vector<FootprintPoint> points) {
   DropInside(points);
   SortPoints(points, dealt, ends);
   points.erase(std::unique(points.begin(), points.end(), AreAtOnePlace), points.end());
-  ChainHull(points, hull);
+  ChainHull(points, TurnsLeft, hull);
   return hull;
 }
 
@@ -285,7 +268,7 @@ void Footprint::Measure(const std::vector<FootprintPoint>& points) {
   DropInside(corners_);
   SortPoints(corners_, dealt_, ends_);
   corners_.erase(std::unique(corners_.begin(), corners_.end(), AreAtOnePlace), corners_.end());
-  ChainHull(corners_, hull_);
+  ChainHull(corners_, TurnsLeft, hull_);
   Simplify(hull_, is_kept_);
   box_ = FitBox(hull_, points);
 }

@@ -1,9 +1,10 @@
 #include "services/tracker/core/assignment.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <tuple>
+
+#include "common/core/assignment.hpp"
 
 namespace lookout::tracker {
 
@@ -12,52 +13,7 @@ namespace {
 constexpr std::size_t kMostExact = 64;
 
 std::size_t At(std::int32_t index) { return static_cast<std::size_t>(index); }
-
-// Square matrix, [n x n] by row: shortest augmenting paths with potentials.
-std::vector<std::size_t> ColumnOfRow(const std::vector<double>& cost, std::size_t n) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::vector<double> row_potential(n + 1, 0.0);
-  std::vector<double> column_potential(n + 1, 0.0);
-  std::vector<std::size_t> row_of_column(n + 1, 0);  // from 1; 0 = none
-  std::vector<std::size_t> way(n + 1, 0);
-  for (std::size_t row = 1; row <= n; ++row) {
-    row_of_column[0] = row;
-    std::size_t at = 0;
-    std::vector<double> least(n + 1, kInfinity);
-    std::vector<bool> is_used(n + 1, false);
-    do {
-      is_used[at] = true;
-      const std::size_t of = row_of_column[at];
-      double step = kInfinity;
-      std::size_t next = 0;
-      for (std::size_t column = 1; column <= n; ++column) {
-        if (is_used[column]) continue;
-        const double reduced = cost[(of - 1) * n + column - 1] - row_potential[of] - column_potential[column];
-        if (reduced < least[column]) {
-          least[column] = reduced;
-          way[column] = at;
-        }
-        if (least[column] < step) {
-          step = least[column];
-          next = column;
-        }
-      }
-      for (std::size_t column = 0; column <= n; ++column) {
-        if (is_used[column]) {
-          row_potential[row_of_column[column]] += step;
-          column_potential[column] -= step;
-        } else {
-          least[column] -= step;
-        }
-      }
-      at = next;
-    } while (row_of_column[at] != 0);
-    for (; at != 0; at = way[at]) row_of_column[at] = row_of_column[way[at]];
-  }
-  std::vector<std::size_t> column_of_row(n);
-  for (std::size_t column = 1; column <= n; ++column) column_of_row[row_of_column[column] - 1] = column - 1;
-  return column_of_row;
-}
+Eigen::Index Index(std::size_t index) { return static_cast<Eigen::Index>(index); }
 
 }  // namespace
 
@@ -108,16 +64,15 @@ std::vector<std::int32_t> Assign(std::int32_t num_rows, std::int32_t num_columns
     }
     // To have none costs `most`.
     const std::size_t n = std::max(rows.size(), columns.size());
-    std::vector<double> cost(n * n, most);
+    CostMatrix cost = CostMatrix::Constant(Index(n), Index(n), most);
     for (const auto& one : some) {
-      const auto row = static_cast<std::size_t>(std::ranges::lower_bound(rows, one.row) - rows.begin());
-      const auto column = static_cast<std::size_t>(std::ranges::lower_bound(columns, one.column) - columns.begin());
-      cost[row * n + column] = std::min(cost[row * n + column], one.cost);
+      double& least = cost(std::ranges::lower_bound(rows, one.row) - rows.begin(), std::ranges::lower_bound(columns, one.column) - columns.begin());
+      least = std::min(least, one.cost);
     }
-    const auto column_of_row = ColumnOfRow(cost, n);
+    const auto column_of_row = CheapestAssignment(cost);
     for (std::size_t row = 0; row < rows.size(); ++row) {
-      const std::size_t column = column_of_row[row];
-      if (column < columns.size() && cost[row * n + column] < most) column_of[At(rows[row])] = columns[column];
+      const std::size_t column = At(column_of_row[row]);
+      if (column < columns.size() && cost(Index(row), Index(column)) < most) column_of[At(rows[row])] = columns[column];
     }
   }
   return column_of;

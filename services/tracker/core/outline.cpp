@@ -216,77 +216,7 @@ std::vector<Eigen::Vector2d> Polygon(const Support& support) {
   return polygon;
 }
 
-Rectangle RectangleAround(std::span<const Eigen::Vector2d> polygon) {
-  Rectangle best{.center_m = polygon.front()};
-  Eigen::Vector2d best_along = Eigen::Vector2d::UnitX();
-  double least_m2 = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d edge = polygon[i + 1 < polygon.size() ? i + 1 : 0] - polygon[i];
-    const double edge_m = edge.norm();
-    if (edge_m == 0.0) continue;
-    const Eigen::Vector2d along = edge / edge_m;
-    const Eigen::Vector2d across(-along.y(), along.x());
-    Eigen::Array2d from = Eigen::Array2d::Zero();  // along and across, from the first corner
-    Eigen::Array2d to = Eigen::Array2d::Zero();
-    for (const auto& corner : polygon) {
-      const Eigen::Array2d at(along.dot(corner - polygon.front()), across.dot(corner - polygon.front()));
-      from = from.min(at);
-      to = to.max(at);
-    }
-    const Eigen::Array2d size = to - from;
-    if (size.prod() >= least_m2) continue;
-    least_m2 = size.prod();
-    const Eigen::Array2d middle = 0.5 * (from + to);
-    best.center_m = polygon.front() + middle[0] * along + middle[1] * across;
-    best.length_m = size.maxCoeff();
-    best.width_m = size.minCoeff();
-    best_along = size[0] >= size[1] ? along : across;
-  }
-  const double angle_rad = WrapTo2Pi(Atan2(best_along.y(), best_along.x()));
-  best.length_angle_rad = angle_rad < kPi ? angle_rad : angle_rad - kPi;
-  return best;
-}
-
 // As by SidesOf, without keeping them: most points lie outside of the rectangle already.
-namespace {
-
-// What lies within the four outermost places is no corner (Akl and Toussaint).
-void DropInner(std::vector<Eigen::Vector2d>& places_m) {
-  constexpr std::size_t kFew = 32;
-  if (places_m.size() < kFew) return;
-  std::array<Eigen::Vector2d, 4> outer;  // counter-clockwise
-  const auto farthest = [&places_m](double x, double y) {
-    return *std::ranges::max_element(places_m, {}, [x, y](const Eigen::Vector2d& place_m) { return x * place_m.x() + y * place_m.y(); });
-  };
-  outer = {farthest(1.0, 0.0), farthest(0.0, 1.0), farthest(-1.0, 0.0), farthest(0.0, -1.0)};
-  std::erase_if(places_m, [&outer](const Eigen::Vector2d& place_m) {
-    for (std::size_t i = 0; i < outer.size(); ++i) {
-      if (Cross(outer.at((i + 1) % outer.size()) - outer.at(i), place_m - outer.at(i)) <= 0.0) return false;
-    }
-    return true;
-  });
-}
-
-}  // namespace
-
-std::vector<Eigen::Vector2d> HullOf(std::vector<Eigen::Vector2d> places_m) {
-  DropInner(places_m);
-  std::ranges::sort(places_m, [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
-  places_m.erase(std::unique(places_m.begin(), places_m.end()), places_m.end());
-  if (places_m.size() < 3) return places_m;
-  // Andrew's monotone chain: the lower side from west to east, then the upper one back.
-  std::vector<Eigen::Vector2d> hull_m;
-  const auto add = [&hull_m](const Eigen::Vector2d& place_m, std::size_t least) {
-    while (hull_m.size() > least && Cross(hull_m.back() - hull_m[hull_m.size() - 2], place_m - hull_m.back()) <= 0.0) hull_m.pop_back();
-    hull_m.push_back(place_m);
-  };
-  for (const auto& place_m : places_m) add(place_m, 1);
-  const std::size_t lower = hull_m.size();
-  for (auto place = std::next(places_m.rbegin()); place != places_m.rend(); ++place) add(*place, lower);
-  hull_m.pop_back();
-  return hull_m;
-}
-
 bool Contains(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point_m) {
   bool is_west_of_one = false;
   bool is_east_of_one = false;

@@ -10,10 +10,9 @@
 #include <span>
 #include <vector>
 
-namespace lookout::tracker {
+#include "common/core/convex.hpp"
 
-/// Positive where b is counter-clockwise of a.
-inline double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+namespace lookout::tracker {
 
 /// Directions of a compass: 0 = east, counter-clockwise, 22.5 deg apart.
 inline constexpr std::size_t kDirections = 16;
@@ -33,19 +32,6 @@ Support SupportOf(std::span<const Eigen::Vector2d> corners_m);
 /// then a line or a point midway.
 /// @return at least one corner, at most 16, none nearer than 1 um to its neighbour
 std::vector<Eigen::Vector2d> Polygon(const Support& support);
-
-/// Rectangle of least area round a polygon.
-struct Rectangle {
-  Eigen::Vector2d center_m = Eigen::Vector2d::Zero();
-  double length_m = 0.0;  // longer side
-  double width_m = 0.0;
-  double length_angle_rad = 0.0;  // of the longer side from the first axis, counter-clockwise, 0 to pi; 0 of a point
-};
-/// @param polygon  at least one corner
-Rectangle RectangleAround(std::span<const Eigen::Vector2d> polygon);
-
-/// Convex hull. @param places_m  at least one, in any order
-std::vector<Eigen::Vector2d> HullOf(std::vector<Eigen::Vector2d> places_m);
 
 bool Contains(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point_m);
 

@@ -88,7 +88,7 @@ std::int32_t FrameOf(const PieceReturns& piece, const std::vector<const Followed
 Seen Together(const ScanInput& scan, const std::map<std::size_t, std::size_t>& returns_of, const Sighting& sighting) {
   const auto most = std::ranges::max_element(returns_of, {}, [](const auto& one) { return one.second; })->first;
   Seen whole = scan.seen[most];
-  whole.outline_m = HullOf(sighting.places_m);
+  whole.outline_m = ConvexHull(sighting.places_m);
   whole.waterline_m.clear();
   whole.num_returns = static_cast<int>(sighting.places_m.size());
   whole.top_above_water_m = std::ranges::max(sighting.heights_m);

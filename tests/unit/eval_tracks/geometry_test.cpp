@@ -31,11 +31,6 @@ TEST(HullGap, TheBayOfAShoreIsOutside) {
 
 TEST(HullGap, MoreThanEnoughIsAllThatIsSaidOfWhatIsFar) { EXPECT_GT(HullGap(SquareAt({0.0, 0.0}), SquareAt({50.0, 50.0}), 2.0), 2.0); }
 
-TEST(ConvexHullOf, DropsWhatIsInsideAndOnEdges) {
-  const auto hull_m = ConvexHullOf({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {1.0, 1.0}, {0.0, 2.0}, {0.0, 2.0}});
-  EXPECT_EQ(hull_m, (Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}}));
-}
-
 TEST(ApproachOf, HullsThatPassEachOther) {
   const auto approach = ApproachOf(SquareAt({0.0, 0.0}), {0.0, 0.0}, SquareAt({30.0, 10.0}), {-3.0, 0.0});
   EXPECT_NEAR(approach.cpa_m, 8.0, 1e-3);  // from when corner stands over corner

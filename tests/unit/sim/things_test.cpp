@@ -158,11 +158,5 @@ TEST(DrawnKinds, DocksRunOutFromTheirLandwardEnd) {
   }
 }
 
-TEST(ConvexHull, GoesRoundAndLeavesOutWhatIsInside) {
-  const auto hull_m = ConvexHull({{0.0, 0.0}, {2.0, 0.0}, {1.0, 0.5}, {2.0, 1.0}, {0.0, 1.0}, {1.0, 0.0}});
-  ASSERT_EQ(hull_m.size(), 4U);
-  EXPECT_TRUE(Contains(hull_m, {1.0, 0.9}));
-}
-
 }  // namespace
 }  // namespace lookout::sim

@@ -156,65 +156,6 @@ TEST(Outline, IsNeverEmptyWhateverItsReaches) {
   }
 }
 
-TEST(RectangleAround, IsThatOfLeastArea) {
-  const double angle_rad = DegToRad(130.0);
-  const Eigen::Vector2d along(std::cos(angle_rad), std::sin(angle_rad));
-  const Eigen::Vector2d across(-along.y(), along.x());
-  const Eigen::Vector2d center(30.0, -40.0);
-  const Polygon2d hull{center - 3.0 * along - across, center + 3.0 * along - across, center + 3.0 * along + 0.2 * across,
-                       center + 2.0 * along + across, center - 3.0 * along + across};
-  const auto rectangle = RectangleAround(hull);
-  EXPECT_NEAR(rectangle.length_m, 6.0, 1e-9);
-  EXPECT_NEAR(rectangle.width_m, 2.0, 1e-9);
-  EXPECT_NEAR(rectangle.length_angle_rad, angle_rad, 1e-9);
-  EXPECT_NEAR((rectangle.center_m - center).norm(), 0.0, 1e-9);
-}
-
-TEST(RectangleAround, OfALineAndAPoint) {
-  const auto line = RectangleAround(kLine);
-  EXPECT_DOUBLE_EQ(line.length_m, 5.0);
-  EXPECT_NEAR(line.width_m, 0.0, 1e-12);
-  EXPECT_DOUBLE_EQ(line.length_angle_rad, std::atan2(4.0, 3.0));
-  EXPECT_NEAR((line.center_m - Eigen::Vector2d(1.5, 2.0)).norm(), 0.0, 1e-12);
-  const auto back = RectangleAround(Polygon2d{{3.0, 4.0}, {0.0, 0.0}});
-  EXPECT_DOUBLE_EQ(back.length_angle_rad, std::atan2(4.0, 3.0));
-  const auto point = RectangleAround(kPoint);
-  EXPECT_EQ(point.length_m, 0.0);
-  EXPECT_EQ(point.width_m, 0.0);
-  EXPECT_EQ(point.length_angle_rad, 0.0);
-  EXPECT_EQ(point.center_m, kPoint[0]);
-}
-
-TEST(HullOf, IsThatOfSquaresLinesAndPoints) {
-  Polygon2d places_m = kSquare;
-  for (const auto& inside_m : {Eigen::Vector2d(1.0, 1.0), Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(2.0, 0.5)}) places_m.push_back(inside_m);
-  places_m.push_back(kSquare.front());
-  EXPECT_EQ(HullOf(places_m), kSquare);
-  EXPECT_EQ(HullOf({kLine[1], kLine[0], kLine[1]}), kLine);
-  EXPECT_EQ(HullOf({{0.0, 0.0}, {1.0, 1.0}, {2.0, 2.0}, {0.5, 0.5}}), (Polygon2d{{0.0, 0.0}, {2.0, 2.0}}));
-  EXPECT_EQ(HullOf({kPoint[0], kPoint[0], kPoint[0]}), kPoint);
-}
-
-TEST(HullOf, IsConvexHoldsAllAndHasNoCornerButOfThem) {
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> place_m(-10.0, 10.0);
-  for (int i = 0; i < 500; ++i) {
-    Polygon2d places_m(1 + random() % 40);
-    // Often on a raster, where many lie on a line.
-    const double raster_m = i % 2 == 0 ? 1.0 : 1e-6;
-    for (auto& place : places_m) place = {raster_m * std::round(place_m(random) / raster_m), raster_m * std::round(place_m(random) / raster_m)};
-    const auto hull_m = HullOf(places_m);
-    for (const auto& place : places_m) ASSERT_TRUE(Contains(hull_m, place)) << i;
-    for (const auto& corner : hull_m) ASSERT_NE(std::ranges::find(places_m, corner), places_m.end()) << i;
-    for (std::size_t k = 0; hull_m.size() > 2 && k < hull_m.size(); ++k) {
-      const auto& next = hull_m[(k + 1) % hull_m.size()];
-      ASSERT_GT(Cross(next - hull_m[k], hull_m[(k + 2) % hull_m.size()] - next), 0.0) << i;
-    }
-    std::ranges::shuffle(places_m, random);
-    ASSERT_EQ(HullOf(places_m), hull_m) << i;
-  }
-}
-
 TEST(Contains, IsExactForPolygonsLinesAndPoints) {
   EXPECT_TRUE(Contains(kSquare, {1.0, 1.0}));
   EXPECT_TRUE(Contains(kSquare, {2.0, 2.0}));
