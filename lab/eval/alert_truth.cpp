@@ -92,12 +92,12 @@ AlertOwnBoat AlertTruth::OwnOf(const Polygon& outline_m, std::int64_t utime_us) 
   own.hull_m = outline_m;
   own.heading_rad = WrapTo2Pi(kPi / 2.0 - yaw_rad);
   own.reference_m = outline_m[0] - Eigen::Rotation2Dd(yaw_rad) * own_hull_m_[0];
-  own.motion = MotionOf(importer::kOwnVesselObject, utime_us);
+  own.motion = MotionOf(data::kOwnVesselObject, utime_us);
   return own;
 }
 
 std::optional<AlertScan> AlertTruth::At(std::int64_t utime_us, const std::map<int, int>& num_returns) const {
-  const auto own_outline_m = outlines_.At(importer::kOwnVesselObject, utime_us);
+  const auto own_outline_m = outlines_.At(data::kOwnVesselObject, utime_us);
   if (!own_outline_m) return std::nullopt;
   AlertScan scan;
   scan.utime_us = utime_us;

@@ -21,12 +21,12 @@
 #include "common/config/text_config.hpp"
 #include "common/io/stop_signal.hpp"
 #include "config/schema/segmenter.pb.h"
+#include "lab/data/csv_file.hpp"
+#include "lab/data/xz_file.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/vlp16/core/decoder.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
-#include "tools/import/csv_file.hpp"
-#include "tools/import/xz_file.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -109,7 +109,7 @@ class TruthFile {
     return static_cast<std::uint16_t>(whole);
   }
 
-  importer::CsvFile csv_;
+  data::CsvFile csv_;
   std::int64_t num_kept_ = 0;
   std::int64_t last_us_ = std::numeric_limits<std::int64_t>::min();
   std::array<std::deque<TrueReturn>, kMaxRings> by_ring_;
@@ -162,7 +162,7 @@ void Join(const CaptureWithTruth& files, TruthFile& truth, LabelledScan& labelle
 
 UnpackedCapture::UnpackedCapture(const fs::path& file) : memory_(fdopen(memfd_create("capture", MFD_CLOEXEC), "wb"), &std::fclose) {
   if (!memory_) throw std::runtime_error(file.string() + ": cannot be unpacked: no memory file");
-  importer::XzFile packed(file, kMaxCaptureBytes);
+  data::XzFile packed(file, kMaxCaptureBytes);
   std::vector<std::uint8_t> block(std::size_t{1} << 16);
   try {
     while (const std::size_t size = packed.Read(block)) {
@@ -178,7 +178,7 @@ fs::path UnpackedCapture::path() const { return "/proc/self/fd/" + std::to_strin
 
 std::map<std::int32_t, ScanObject> ReadObjectsOfCapture(const CaptureWithTruth& files) {
   constexpr std::size_t kMaxObjects = 100'000;
-  importer::CsvFile csv(files.objects, {"object_id", "type"});
+  data::CsvFile csv(files.objects, {"object_id", "type"});
   std::map<std::int32_t, ScanObject> objects;
   while (csv.Next()) {
     const auto id = static_cast<std::int32_t>(csv.WholeNumber(0, 1, std::numeric_limits<std::int32_t>::max()));

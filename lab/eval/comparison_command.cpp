@@ -20,6 +20,10 @@
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
+#include "lab/data/kitti.hpp"
+#include "lab/data/organise.hpp"
+#include "lab/data/pcd.hpp"
+#include "lab/data/scan_message.hpp"
 #include "lab/eval/captures.hpp"
 #include "lab/eval/figures.hpp"
 #include "lab/eval/leave_out.hpp"
@@ -35,10 +39,6 @@
 #include "lab/eval/track_sources.hpp"
 #include "lab/eval/worst_pictures.hpp"
 #include "lab/sim/scene_file.hpp"
-#include "tools/import/kitti.hpp"
-#include "tools/import/organise.hpp"
-#include "tools/import/pcd.hpp"
-#include "tools/import/scan_message.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout::eval {
@@ -95,22 +95,22 @@ Methods MethodsOf(const ComparisonOptions& options, const Boat& boat, const std:
 // The column of the tables in which recordings stand.
 const std::string kPointsLabel = "points";
 
-importer::PointCloud ReadPoints(const std::filesystem::path& file) {
-  if (file.extension() == ".pcd") return importer::ReadPcd(file);
+data::PointCloud ReadPoints(const std::filesystem::path& file) {
+  if (file.extension() == ".pcd") return data::ReadPcd(file);
   if (file.extension() != ".bin") throw std::invalid_argument("--points " + file.string() + ": must end in .pcd or .bin");
   auto label_file = file;
   label_file.replace_extension(".label");
-  return std::filesystem::exists(label_file) ? importer::ReadKitti(file, label_file) : importer::ReadKitti(file, std::nullopt);
+  return std::filesystem::exists(label_file) ? data::ReadKitti(file, label_file) : data::ReadKitti(file, std::nullopt);
 }
 
 void AddPoints(const std::vector<std::string>& files, MethodComparison& comparison) {
   int index = 0;
   for (const auto& file : files) {
     const auto cloud = ReadPoints(file);
-    auto organised = importer::Organise(cloud);
+    auto organised = data::Organise(cloud);
     auto& scan = organised.labelled.scan;
     // As it would come over the bus: a scan that the segmenter would refuse is not scored.
-    auto received = ScanOfMessages(importer::ToScanMessages(scan, "recording", bus::kMaxMessageBytes));
+    auto received = ScanOfMessages(data::ToScanMessages(scan, "recording", bus::kMaxMessageBytes));
     if (!received || received->num_cells() != scan.num_cells()) throw std::runtime_error(file + ": the segmenter refuses this scan");
     scan = std::move(*received);
     comparison.Add({kPointsLabel, 0, index++}, organised.labelled);

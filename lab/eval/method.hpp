@@ -9,15 +9,15 @@
 #include <utility>
 #include <vector>
 
+#include "lab/data/labelled_scan.hpp"
 #include "services/segmenter/core/scan.hpp"
-#include "tools/import/labelled_scan.hpp"
 
 namespace lookout::eval {
 
-using importer::kNoTrueObject;
-using importer::kOwnVesselObject;
-using importer::LabelledScan;
-using importer::ScanObject;
+using data::kNoTrueObject;
+using data::kOwnVesselObject;
+using data::LabelledScan;
+using data::ScanObject;
 
 /// Label of a return that the method was told not to look at, outside of its field of view: it does not count for its score.
 inline constexpr std::int32_t kNotScored = -1;

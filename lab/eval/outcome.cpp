@@ -17,7 +17,7 @@ struct Shares {
   std::int64_t clutter = 0;
 };
 
-Shares SharesOf(int id, const Confusion::Segment& segment, const std::map<std::int32_t, importer::ScanObject>& objects) {
+Shares SharesOf(int id, const Confusion::Segment& segment, const std::map<std::int32_t, data::ScanObject>& objects) {
   Shares shares;
   for (const auto& [object, count] : segment.returns_by_object) {
     auto& share = object == id ? shares.own : object <= 0 ? shares.clutter : IsLand(objects.at(object)) ? shares.land : shares.things;
@@ -33,13 +33,13 @@ Outcome OutcomeOfForeign(const Shares& shares) {
 
 }  // namespace
 
-bool IsLand(const importer::ScanObject& object) {
+bool IsLand(const data::ScanObject& object) {
   constexpr std::array<std::string_view, 4> kBuiltIntoTheWater{"dock", "pier", "jetty", "pontoon"};
   const auto is_part_of_kind = [&object](std::string_view word) { return object.kind.find(word) != std::string::npos; };
   return !object.is_in_water && std::ranges::none_of(kBuiltIntoTheWater, is_part_of_kind);
 }
 
-Fate FateOf(int id, const Confusion::Matches& matches, const std::map<std::int32_t, importer::ScanObject>& objects) {
+Fate FateOf(int id, const Confusion::Matches& matches, const std::map<std::int32_t, data::ScanObject>& objects) {
   const auto& object = matches.objects.at(id);
   Fate fate;
   std::int64_t num_in_segments = 0;

@@ -7,8 +7,8 @@
 #include <map>
 #include <string_view>
 
+#include "lab/data/labelled_scan.hpp"
 #include "lab/eval/metrics.hpp"
-#include "tools/import/labelled_scan.hpp"
 
 namespace lookout::eval {
 
@@ -17,7 +17,7 @@ inline constexpr double kFoundIou = 0.5;
 
 /// Shores, islands, walls, what grows and stands there: all that is not in the water, but for docks, piers, jetties and pontoons. All else is a
 /// thing.
-bool IsLand(const importer::ScanObject& object);
+bool IsLand(const data::ScanObject& object);
 
 enum class Outcome {
   kFound,        // IoU >= kFoundIou
@@ -40,7 +40,7 @@ struct Fate {
 ///
 /// Of segments that hold equally much of it, the smallest counts, then by what else they hold: the ids of segments decide nothing but `segment`.
 /// Precondition: `id` is of matches.objects.
-Fate FateOf(int id, const Confusion::Matches& matches, const std::map<std::int32_t, importer::ScanObject>& objects);
+Fate FateOf(int id, const Confusion::Matches& matches, const std::map<std::int32_t, data::ScanObject>& objects);
 
 /// How many things had which outcome.
 struct Outcomes {

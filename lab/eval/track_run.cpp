@@ -109,7 +109,7 @@ std::vector<TrackRun::LabelledReturn> TrackRun::Join(const messages::ScanMessage
           const auto* truth = truth_.Find(part.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k);
           if (truth == nullptr) continue;
           ++num_joined_;
-          if (truth->object_id != importer::kOwnVesselObject) {
+          if (truth->object_id != data::kOwnVesselObject) {
             returns.push_back({truth->object_id, is_labelled ? found->second.label[cell] : 0, piece[cell]});
           }
         }

@@ -101,7 +101,7 @@ class TrackRun {
   Truth& truth_;
   Returns used_returns_;
   ApproachLimits limits_;
-  std::map<std::int32_t, importer::ScanObject> objects_;
+  std::map<std::int32_t, data::ScanObject> objects_;
   MultiObjectTrackers trackers_;
   messages::ScanCollector collector_;
   MapOrigin origin_{};

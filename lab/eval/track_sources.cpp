@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "common/core/angles.hpp"
+#include "lab/data/csv_file.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "lab/sim/simulation.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
-#include "tools/import/csv_file.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -81,7 +81,7 @@ fs::path Beside(const CaptureWithTruth& files, const std::string& ending) {
 // Of objects that are no rectangles; they stand.
 std::map<int, Polygon> ReadShapes(const fs::path& file) {
   std::map<int, Polygon> shapes;
-  importer::CsvFile csv(file, {"object_id", "east", "north"});
+  data::CsvFile csv(file, {"object_id", "east", "north"});
   while (csv.Next()) shapes[static_cast<int>(csv.WholeNumber(0, 1, kMaxId))].emplace_back(csv.Number(1), csv.Number(2));
   return shapes;
 }
@@ -108,7 +108,7 @@ void ReadObjectRows(const CaptureWithTruth& files, Truth& truth) {
   constexpr double kMovingMps = 0.01;
   const auto shapes = ReadShapes(Beside(files, ".shapes.csv.xz"));
   const auto known = ReadObjectsOfCapture(files);
-  importer::CsvFile csv(files.objects, {"utime_us", "object_id", "lat", "lon", "east", "north", "heading_deg", "speed_mps", "length", "width"});
+  data::CsvFile csv(files.objects, {"utime_us", "object_id", "lat", "lon", "east", "north", "heading_deg", "speed_mps", "length", "width"});
   std::map<int, LastRow> last;
   while (csv.Next()) {
     const auto utime_us = csv.WholeNumber(0, 0, kMaxTime);
@@ -142,23 +142,23 @@ void ReadObjectRows(const CaptureWithTruth& files, Truth& truth) {
 }
 
 void ReadOwnRows(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth) {
-  truth.AddObject(importer::kOwnVesselObject, {"own_vessel", "own_vessel", true, true});
-  truth.AddObject(importer::kNoTrueObject, {"none", "none", false, false});
-  importer::CsvFile csv(Beside(files, ".ego.csv.xz"), {"utime_us", "lat", "lon", "heading_deg"});
+  truth.AddObject(data::kOwnVesselObject, {"own_vessel", "own_vessel", true, true});
+  truth.AddObject(data::kNoTrueObject, {"none", "none", false, false});
+  data::CsvFile csv(Beside(files, ".ego.csv.xz"), {"utime_us", "lat", "lon", "heading_deg"});
   while (csv.Next()) {
     const auto map = MapAt(csv.Number(1), csv.Number(2));
-    truth.AddOutline(importer::kOwnVesselObject, csv.WholeNumber(0, 0, kMaxTime),
+    truth.AddOutline(data::kOwnVesselObject, csv.WholeNumber(0, 0, kMaxTime),
                      OnEarth(map, OutlineAt(Eigen::Vector2d::Zero(), DegToRad(csv.Number(3)), OwnHullOf(boat))));
   }
 }
 
 void ReadReturnRows(const CaptureWithTruth& files, Truth& truth) {
   constexpr int kMaxRing = 127;
-  importer::CsvFile csv(files.truth, {"utime_us", "ring", "return_index", "object_id"});
+  data::CsvFile csv(files.truth, {"utime_us", "ring", "return_index", "object_id"});
   std::vector<Truth::Return> returns;
   while (csv.Next()) {
     returns.push_back({csv.WholeNumber(0, 0, kMaxTime), static_cast<int>(csv.WholeNumber(1, 0, kMaxRing)), static_cast<int>(csv.WholeNumber(2, 0, 1)),
-                       static_cast<int>(csv.WholeNumber(3, importer::kOwnVesselObject, kMaxId)),
+                       static_cast<int>(csv.WholeNumber(3, data::kOwnVesselObject, kMaxId)),
                        Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())});
   }
   truth.AddReturns(std::move(returns));
@@ -221,7 +221,7 @@ void ReadRunOfObjects(const CaptureWithTruth& files, const config::BoatFacts& bo
 
 std::map<std::int64_t, std::map<int, int>> ReadReturnCounts(const CaptureWithTruth& files) {
   std::map<std::int64_t, std::map<int, int>> counts;
-  importer::CsvFile csv(files.objects, {"utime_us", "object_id", "returns"});
+  data::CsvFile csv(files.objects, {"utime_us", "object_id", "returns"});
   while (csv.Next()) {
     counts[csv.WholeNumber(0, 0, kMaxTime)][static_cast<int>(csv.WholeNumber(1, 1, kMaxId))] = static_cast<int>(csv.WholeNumber(2, 0, kMaxId));
   }

@@ -7,8 +7,8 @@
 
 namespace lookout::eval {
 
-std::map<std::int32_t, importer::ScanObject> ObjectsOf(const Truth& truth) {
-  std::map<std::int32_t, importer::ScanObject> objects;
+std::map<std::int32_t, data::ScanObject> ObjectsOf(const Truth& truth) {
+  std::map<std::int32_t, data::ScanObject> objects;
   for (const auto& [id, object] : truth.objects()) objects[id] = {object.name, object.kind, object.is_in_water};
   return objects;
 }
@@ -43,10 +43,10 @@ TrueScan TrackTruth::At(std::int64_t utime_us, const std::map<int, int>& num_ret
   TrueScan scan;
   scan.utime_us = utime_us;
   for (const auto& [id, object] : objects_) {
-    if (id == importer::kNoTrueObject) continue;
+    if (id == data::kNoTrueObject) continue;
     const auto outline_m = outlines_.At(id, utime_us);
     if (!outline_m) continue;
-    if (id == importer::kOwnVesselObject) {
+    if (id == data::kOwnVesselObject) {
       scan.own = TrueBoat{*outline_m, VelocityOf(id, utime_us)};
       continue;
     }

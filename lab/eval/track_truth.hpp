@@ -6,9 +6,9 @@
 #include <map>
 #include <memory>
 
+#include "lab/data/labelled_scan.hpp"
 #include "lab/eval/track_scan.hpp"
 #include "lab/eval/truth.hpp"
-#include "tools/import/labelled_scan.hpp"
 
 namespace lookout::eval {
 
@@ -16,7 +16,7 @@ namespace lookout::eval {
 using MapOrigin = std::array<double, 3>;
 
 /// Objects of a truth, as IsLand asks for them.
-std::map<std::int32_t, importer::ScanObject> ObjectsOf(const Truth& truth);
+std::map<std::int32_t, data::ScanObject> ObjectsOf(const Truth& truth);
 
 class TrackTruth {
  public:
@@ -31,7 +31,7 @@ class TrackTruth {
   TrueThing MakeThing(int id, const Polygon& outline_m) const;
   Eigen::Vector2d VelocityOf(int id, std::int64_t utime_us) const;
 
-  std::map<std::int32_t, importer::ScanObject> objects_;
+  std::map<std::int32_t, data::ScanObject> objects_;
   Outlines outlines_;
   std::map<int, TrueThing> standing_;
 };

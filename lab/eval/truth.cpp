@@ -5,7 +5,7 @@
 #include <limits>
 #include <tuple>
 
-#include "tools/import/csv_file.hpp"
+#include "lab/data/csv_file.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -60,24 +60,24 @@ Truth::Truth(const std::filesystem::path& folder) {
   constexpr auto kMaxTime = std::numeric_limits<std::int64_t>::max();
   constexpr auto kMinId = std::numeric_limits<int>::min();
   constexpr auto kMaxId = std::numeric_limits<int>::max();
-  const auto whole = [](const importer::CsvFile& file, std::size_t column) { return static_cast<int>(file.WholeNumber(column, kMinId, kMaxId)); };
+  const auto whole = [](const data::CsvFile& file, std::size_t column) { return static_cast<int>(file.WholeNumber(column, kMinId, kMaxId)); };
 
-  importer::CsvFile objects(folder / "objects.csv", {"object_id", "name", "kind", "is_moving"}, {"is_in_water"});
+  data::CsvFile objects(folder / "objects.csv", {"object_id", "name", "kind", "is_moving"}, {"is_in_water"});
   while (objects.Next()) {
     const bool is_in_water = objects.Has(4) && whole(objects, 4) != 0;
     objects_[whole(objects, 0)] = {std::string(objects.Text(1)), std::string(objects.Text(2)), whole(objects, 3) != 0, is_in_water};
   }
 
-  importer::CsvFile outlines(folder / "outlines.csv", {"object_id", "utime_us", "latitude_deg", "longitude_deg"});
+  data::CsvFile outlines(folder / "outlines.csv", {"object_id", "utime_us", "latitude_deg", "longitude_deg"});
   while (outlines.Next()) {
     outlines_[whole(outlines, 0)][outlines.WholeNumber(1, 0, kMaxTime)].push_back({outlines.Number(2), outlines.Number(3)});
   }
-  importer::CsvFile poses(folder / "pose.csv", {"utime_us", "latitude_deg", "longitude_deg", "heading_deg", "roll_deg", "pitch_deg"});
+  data::CsvFile poses(folder / "pose.csv", {"utime_us", "latitude_deg", "longitude_deg", "heading_deg", "roll_deg", "pitch_deg"});
   while (poses.Next()) {
     poses_[poses.WholeNumber(0, 0, kMaxTime)] = {poses.Number(1), poses.Number(2), poses.Number(3), poses.Number(4), poses.Number(5)};
   }
   // Truths of older simulators end before the places.
-  importer::CsvFile returns(folder / "returns.csv", {"utime_us", "ring", "return_index", "object_id"}, {"x_m", "y_m", "z_m"});
+  data::CsvFile returns(folder / "returns.csv", {"utime_us", "ring", "return_index", "object_id"}, {"x_m", "y_m", "z_m"});
   const bool has_places = returns.Has(4) && returns.Has(5) && returns.Has(6);
   while (returns.Next()) {
     Return made{returns.WholeNumber(0, 0, kMaxTime), whole(returns, 1), whole(returns, 2), whole(returns, 3),

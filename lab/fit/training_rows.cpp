@@ -29,7 +29,7 @@ std::span<const Sign> SignsOf(std::size_t sum) {
 }
 
 // What stands on the ground and is no land: a row of posts or a floating deck may be either.
-bool IsDock(const importer::ScanObject& object) { return !object.is_in_water && !eval::IsLand(object); }
+bool IsDock(const data::ScanObject& object) { return !object.is_in_water && !eval::IsLand(object); }
 
 std::int32_t FamilyNumber(const std::string& family, Rows& rows) {
   const auto found = std::ranges::find(rows.families, family);
@@ -59,7 +59,7 @@ float PairWeight(const PieceTruth& one, const PieceTruth& other) {
   const auto& greater = &lesser == &one ? other : one;
   const auto returns = static_cast<float>(lesser.num_returns);
   const auto whole = [](const PieceTruth& piece) { return static_cast<float>(std::max(piece.num_of_object, kLeastObject)); };
-  const auto is_clutter = [](const PieceTruth& piece) { return piece.object == importer::kNoTrueObject; };
+  const auto is_clutter = [](const PieceTruth& piece) { return piece.object == data::kNoTrueObject; };
   const float lost = is_clutter(lesser) ? 0.0F : returns / whole(lesser);
   const bool is_diluted = one.object != other.object && !is_clutter(greater);
   const float diluted = is_diluted ? returns / (returns + whole(greater)) : 0.0F;
@@ -78,13 +78,13 @@ void RowMaker::Add(std::size_t sum, const TrainingScan& scan, Rows& rows) {
   AddGroups(sum, scan, scan_number, rows);
 }
 
-std::vector<PieceTruth> RowMaker::TruthOfPieces(const importer::LabelledScan& truth) {
+std::vector<PieceTruth> RowMaker::TruthOfPieces(const data::LabelledScan& truth) {
   const auto& returns = classifier_.result().returns;
   const auto of_returns = method_.pieces().of_returns();
   std::map<std::int32_t, std::int32_t> num_of_object;
   std::vector<std::map<std::int32_t, std::int32_t>> votes(static_cast<std::size_t>(method_.pieces().size()));
   for (std::size_t i = 0; i < returns.size(); ++i) {
-    const std::int32_t object = std::max(truth.object[static_cast<std::size_t>(returns[i].cell)], importer::kNoTrueObject);
+    const std::int32_t object = std::max(truth.object[static_cast<std::size_t>(returns[i].cell)], data::kNoTrueObject);
     ++num_of_object[object];
     if (of_returns[i] >= 0) ++votes[static_cast<std::size_t>(of_returns[i])][object];
   }
@@ -97,7 +97,7 @@ std::vector<PieceTruth> RowMaker::TruthOfPieces(const importer::LabelledScan& tr
       most = count;
       pieces[i].object = object;
     }
-    const bool is_clutter = pieces[i].object == importer::kNoTrueObject;
+    const bool is_clutter = pieces[i].object == data::kNoTrueObject;
     pieces[i].num_of_object = is_clutter ? pieces[i].num_returns : num_of_object[pieces[i].object];
   }
   return pieces;
@@ -108,7 +108,7 @@ void RowMaker::AddPairs(std::size_t merge, const TrainingScan& scan, std::int32_
   for (const auto& pair : method_.FindPairs(merge)) {
     const auto& one = truth[static_cast<std::size_t>(pair.one)];
     const auto& other = truth[static_cast<std::size_t>(pair.other)];
-    if (one.object == importer::kNoTrueObject && other.object == importer::kNoTrueObject) continue;
+    if (one.object == data::kNoTrueObject && other.object == data::kNoTrueObject) continue;
     rows.Add(pair.features, one.object == other.object, PairWeight(one, other), scan_number);
   }
 }
@@ -117,7 +117,7 @@ void RowMaker::AddGroups(std::size_t sum, const TrainingScan& scan, std::int32_t
   const auto truth = TruthOfPieces(scan.truth);
   const auto features = method_.MeasureGroups();
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    const bool is_thing = truth[i].object != importer::kNoTrueObject;
+    const bool is_thing = truth[i].object != data::kNoTrueObject;
     if (sum == segmenter::kThingSum) {
       rows.Add(features[i], is_thing, 1.0F, scan_number);
       continue;

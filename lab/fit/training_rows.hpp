@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "lab/data/labelled_scan.hpp"
 #include "lab/fit/rows.hpp"
 #include "services/segmenter/core/lookout/lookout_method.hpp"
 #include "services/segmenter/core/segmenter.hpp"
-#include "tools/import/labelled_scan.hpp"
 
 namespace lookout::fit {
 
 struct TrainingScan {
   std::string family;
-  importer::LabelledScan truth;
+  data::LabelledScan truth;
 };
 
 /// The features of a sum (by its number in segmenter::kEvidenceLayouts) with their signs (README). @throws std::logic_error for a sign of a feature
@@ -23,7 +23,7 @@ std::vector<Feature> FeaturesOf(std::size_t sum);
 
 /// What a group is in truth: the object that most of its returns are of.
 struct PieceTruth {
-  std::int32_t object = importer::kNoTrueObject;  // clutter and the own vessel: kNoTrueObject
+  std::int32_t object = data::kNoTrueObject;  // clutter and the own vessel: kNoTrueObject
   std::int32_t num_returns = 0;
   std::int32_t num_of_object = 0;  // all returns of that object in the scan; of clutter, its own
 };
@@ -53,7 +53,7 @@ class RowMaker {
   void Add(std::size_t sum, const TrainingScan& scan, Rows& rows);
 
  private:
-  std::vector<PieceTruth> TruthOfPieces(const importer::LabelledScan& truth);
+  std::vector<PieceTruth> TruthOfPieces(const data::LabelledScan& truth);
   void AddPairs(std::size_t merge, const TrainingScan& scan, std::int32_t scan_number, Rows& rows);
   void AddGroups(std::size_t sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows);
 

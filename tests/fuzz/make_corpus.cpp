@@ -14,7 +14,7 @@
 #include "common/bus/schema.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "tests/fuzz/packet_script.hpp"
-#include "tests/unit/import/cloud_text.hpp"
+#include "tests/unit/data/cloud_text.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
@@ -396,7 +396,7 @@ void WritePatches(const Folder& folder) {
 
 // One input is a PCD file, or points and then their labels.
 void WritePointFiles(const Folder& folder) {
-  using namespace importer::test;
+  using namespace data::test;
   const std::string text = "1 2 3 7\n-4.5 nan 6 0\n1e1 2 3 7\n";
   folder.Write("text.pcd", PcdHeaderText(3, "x y z label", "4 4 4 4", "F F F U", "ascii") + text);
   folder.Write("order.pcd", PcdHeaderText(3, "label z intensity x y", "2 8 4 4 4", "I F F F F", "ascii") + "1 2 3 4 5\n2 3 4 5 6\n3 4 5 6 7\n");

@@ -4,14 +4,15 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "lab/data/kitti.hpp"
+#include "lab/data/organise.hpp"
+#include "lab/data/pcd.hpp"
 #include "tools/import/file_bytes.hpp"
-#include "tools/import/kitti.hpp"
-#include "tools/import/organise.hpp"
-#include "tools/import/pcd.hpp"
 
 namespace {
 
-using namespace lookout::importer;
+using namespace lookout::data;
+using lookout::importer::PointFileError;
 
 void MakeTurn(const PointCloud& cloud) {
   const auto organised = Organise(cloud);

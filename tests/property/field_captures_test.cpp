@@ -12,11 +12,11 @@
 
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
+#include "lab/data/xz_file.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/lidar_clock_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "tests/support/files.hpp"
-#include "tools/import/xz_file.hpp"
 #include "tools/log/commands.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
@@ -113,7 +113,7 @@ TEST_F(FieldCapture, PackedByGzipIsReadAsWhatItHolds) {
 TEST_F(FieldCapture, WithTheIpLengthOfADataPacketInPositionPacketsLocksTheClock) {
   const auto file = folder_ / "position.pcap";
   {
-    importer::XzFile packed(kField / "position_ip_length.pcap.xz", 64UL * 1024 * 1024);
+    data::XzFile packed(kField / "position_ip_length.pcap.xz", 64UL * 1024 * 1024);
     std::vector<std::uint8_t> bytes(64UL * 1024);
     std::ofstream out(file, std::ios::binary);
     while (const auto size = packed.Read(bytes)) out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(size));

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <map>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -157,6 +158,25 @@ TEST(Structure, NothingThatSailsIncludesTheLaboratory) {
     }
   }
   EXPECT_GT(num_checked, 1000);
+}
+
+// Data and the simulator know nothing of what is measured on them.
+TEST(Structure, FoldersOfTheLaboratoryIncludeOnlyWhatTheyMay) {
+  const std::map<std::string, std::regex> allowed{{"data", std::regex("common/.*|services/segmenter/core/.*|tools/import/.*|lab/data/.*")},
+                                                  {"sim", std::regex("common/.*|services/vlp16/.*|lab/sim/.*")},
+                                                  {"eval", std::regex("common/.*|services/.*|tools/.*|lab/(data|sim|eval)/.*")},
+                                                  {"fit", std::regex("common/.*|services/segmenter/.*|lab/(data|sim|eval|fit)/.*")}};
+  const std::regex ours("(common|services|tools|lab)/.*");
+  int num_checked = 0;
+  for (const auto& file : SourcesBelow(kSources / "lab")) {
+    const auto path = fs::relative(file, kSources / "lab");
+    for (const auto& include : Includes(file)) {
+      if (!std::regex_match(include, ours)) continue;
+      EXPECT_TRUE(std::regex_match(include, allowed.at(path.begin()->string()))) << "lab/" << path.string() << " may not include " << include;
+      ++num_checked;
+    }
+  }
+  EXPECT_GT(num_checked, 300);
 }
 
 }  // namespace

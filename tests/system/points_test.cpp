@@ -12,14 +12,14 @@
 
 #include "tests/support/child.hpp"
 #include "tests/support/files.hpp"
-#include "tests/unit/import/cloud_text.hpp"
+#include "tests/unit/data/cloud_text.hpp"
 
 namespace lookout::system_test {
 namespace {
 
 using namespace support;
 namespace fs = std::filesystem;
-using importer::test::Append;
+using data::test::Append;
 
 struct Point {
   float x_m;
@@ -80,7 +80,7 @@ class Points : public ::testing::Test {
 
   static std::string Kitti(const std::vector<Point>& points) {
     std::string bytes;
-    for (const auto& point : points) bytes += importer::test::KittiPoint(point.x_m, point.y_m, point.z_m);
+    for (const auto& point : points) bytes += data::test::KittiPoint(point.x_m, point.y_m, point.z_m);
     return bytes;
   }
   template <typename ToLabel>
@@ -91,7 +91,7 @@ class Points : public ::testing::Test {
   }
   static std::string Pcd(const std::vector<Point>& points, bool is_binary) {
     std::string bytes =
-        importer::test::PcdHeaderText(static_cast<int>(points.size()), "x y z label", "4 4 4 4", "F F F U", is_binary ? "binary" : "ascii");
+        data::test::PcdHeaderText(static_cast<int>(points.size()), "x y z label", "4 4 4 4", "F F F U", is_binary ? "binary" : "ascii");
     for (const auto& point : points) {
       if (is_binary) {
         for (const float value : {point.x_m, point.y_m, point.z_m}) Append(bytes, value);

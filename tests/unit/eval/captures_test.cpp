@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "lab/data/xz_file.hpp"
 #include "lab/eval/method_comparison.hpp"
 #include "lab/eval/methods.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/eval/captures_fixture.hpp"
-#include "tools/import/xz_file.hpp"
 
 namespace lookout::eval::test {
 namespace {
@@ -212,10 +212,10 @@ TEST(XzFile, RefusesWhatUnpacksToTooMuch) {
   const auto file = folder / "file.xz";
   std::ofstream(file, std::ios::binary) << Pack(std::string(1 << 20, 'a'));
   std::vector<std::uint8_t> out(1 << 21);
-  EXPECT_EQ(importer::XzFile(file, 1 << 20).Read(out), std::size_t{1} << 20);
-  EXPECT_THROW(importer::XzFile(file, (1 << 20) - 1).Read(out), std::runtime_error);
+  EXPECT_EQ(data::XzFile(file, 1 << 20).Read(out), std::size_t{1} << 20);
+  EXPECT_THROW(data::XzFile(file, (1 << 20) - 1).Read(out), std::runtime_error);
   fs::remove(file);
-  EXPECT_THROW(importer::XzFile(file, 1), std::runtime_error);
+  EXPECT_THROW(data::XzFile(file, 1), std::runtime_error);
 }
 
 TEST(SecondWorld, EveryReturnOfItsCapturesHasItsTruthAndTheDefaultMethodSeesItsThings) {

@@ -40,13 +40,13 @@ std::vector<Geodetic> OnEarth(const Polygon& corners_m) {
 // The own boat goes east at 2 m/s from the origin; a boat lies 30 m ahead.
 Truth TruthOfOneBoat() {
   Truth truth(1);
-  truth.AddObject(importer::kOwnVesselObject, {"own_vessel", "own_vessel", true, true});
+  truth.AddObject(data::kOwnVesselObject, {"own_vessel", "own_vessel", true, true});
   truth.AddObject(1, {"boat", "motor_boat", false, true});
   truth.AddOutline(1, kStartUs, OnEarth(SquareAt({30.0, 0.0})));
   for (int i = -10; i <= 60; ++i) {
     Polygon hull_m = kHullM;
     for (auto& corner_m : hull_m) corner_m.x() += 0.2 * i;
-    truth.AddOutline(importer::kOwnVesselObject, kStartUs + i * kScanUs, OnEarth(hull_m));
+    truth.AddOutline(data::kOwnVesselObject, kStartUs + i * kScanUs, OnEarth(hull_m));
   }
   return truth;
 }

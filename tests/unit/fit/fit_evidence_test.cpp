@@ -46,7 +46,7 @@ TrainingScan MakeScan(const std::string& family, int step) {
       const double range_m = is_boat ? 8.0 + 0.2 * step : is_moored ? 19.2 : is_wall ? 20.0 : is_spray ? 3.0 + column % 5 : 0.0;
       columns.range.push_back(static_cast<std::uint16_t>(std::lround(range_m / kUnitM)));
       columns.reflectivity.push_back(30);
-      truth.object.push_back(is_boat ? kBoat : is_moored ? kMoored : is_wall ? kWall : importer::kNoTrueObject);
+      truth.object.push_back(is_boat ? kBoat : is_moored ? kMoored : is_wall ? kWall : data::kNoTrueObject);
     }
   }
   return scan;
@@ -90,7 +90,7 @@ TEST(TrainingRows, APairWeighsWhatItsObjectsLoseByAWrongAnswer) {
   const PieceTruth boat{kBoat, 10, 10};
   const PieceTruth quay{kWall, 1000, 2000};
   const PieceTruth stone{kWall, 100, 2000};
-  const PieceTruth drop{importer::kNoTrueObject, 2, 2};
+  const PieceTruth drop{data::kNoTrueObject, 2, 2};
   EXPECT_FLOAT_EQ(PairWeight(stone, quay), 0.05F) << "the quay loses a twentieth";
   EXPECT_FLOAT_EQ(PairWeight(boat, quay), 1.0F) << "all of the boat";
   EXPECT_FLOAT_EQ(PairWeight(quay, boat), 1.0F);

@@ -1,15 +1,15 @@
-#include "tools/import/organise.hpp"
+#include "lab/data/organise.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
 
 #include "common/core/angles.hpp"
 #include "common/messages/checks.hpp"
+#include "lab/data/scan_message.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/wire.hpp"
-#include "tools/import/scan_message.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 namespace {
 
 CloudPoint Point(double azimuth_deg, double elevation_deg, double range_m, std::int32_t object = kNoTrueObject) {
@@ -149,4 +149,4 @@ TEST(ScanMessage, ComesBackThroughTheSegmentersOwnDoor) {
 }
 
 }  // namespace
-}  // namespace lookout::importer
+}  // namespace lookout::data

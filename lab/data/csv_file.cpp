@@ -1,4 +1,4 @@
-#include "tools/import/csv_file.hpp"
+#include "lab/data/csv_file.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "tools/import/xz_file.hpp"
+#include "lab/data/xz_file.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 namespace {
 
 constexpr std::size_t kReadBytes = std::size_t{1} << 16;
@@ -112,4 +112,4 @@ void CsvFile::Split() {
   }
 }
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

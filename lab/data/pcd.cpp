@@ -1,4 +1,4 @@
-#include "tools/import/pcd.hpp"
+#include "lab/data/pcd.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -13,9 +13,14 @@
 
 #include "tools/import/file_bytes.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 
 namespace {
+
+using importer::PointFileError;
+using importer::ReadFileBytes;
+using importer::RefuseByte;
+using importer::RefuseLine;
 
 static_assert(std::endian::native == std::endian::little, "binary PCD files are little-endian");
 
@@ -367,4 +372,4 @@ PointCloud ParsePcd(std::string_view bytes, const std::string& name) {
 
 PointCloud ReadPcd(const std::filesystem::path& file) { return ParsePcd(ReadFileBytes(file), file.string()); }
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

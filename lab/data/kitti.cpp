@@ -1,4 +1,4 @@
-#include "tools/import/kitti.hpp"
+#include "lab/data/kitti.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,9 +8,12 @@
 #include "common/core/bytes.hpp"
 #include "tools/import/file_bytes.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 
 namespace {
+
+using importer::ReadFileBytes;
+using importer::RefuseByte;
 
 constexpr std::size_t kPointBytes = 16;
 constexpr std::size_t kLabelBytes = 4;
@@ -84,4 +87,4 @@ PointCloud ReadKitti(const std::filesystem::path& points_file, const std::option
   return ParseKitti(points, points_file.string(), labels, label_file->string());
 }
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

@@ -1,10 +1,10 @@
-#include "tools/import/scan_message.hpp"
+#include "lab/data/scan_message.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cstddef>
 
-namespace lookout::importer {
+namespace lookout::data {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::vector<lidar_scan_t> ToScanMessages(const segmenter::Scan& scan, const std:
   return messages;
 }
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

@@ -1,10 +1,10 @@
-#include "tools/import/xz_file.hpp"
+#include "lab/data/xz_file.hpp"
 
 #include <stdexcept>
 #include <string>
 #include <system_error>
 
-namespace lookout::importer {
+namespace lookout::data {
 namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
@@ -55,4 +55,4 @@ std::size_t XzFile::Read(std::span<std::uint8_t> out) {
   return count;
 }
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "tools/import/point_cloud.hpp"
+#include "lab/data/point_cloud.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 
 /// Fields may come in any order, with any type and size, and others beside them. x, y, z are metres in the frame of the sensor. `intensity` is kept
 /// as a whole number from 0 to 255. `label` is the object that a point belongs to, 0 and below for none; without it the cloud has no labels.
@@ -18,4 +18,4 @@ PointCloud ReadPcd(const std::filesystem::path& file);
 /// The same of bytes at hand. The name is for errors.
 PointCloud ParsePcd(std::string_view bytes, const std::string& name);
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace lookout::importer::test {
+namespace lookout::data::test {
 
 template <typename T>
 void Append(std::string& bytes, T value) {
@@ -34,4 +34,4 @@ inline std::string PcdHeaderText(int num_points, std::string_view fields, std::s
          num + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + num + "\nDATA " + std::string(data) + "\n";
 }
 
-}  // namespace lookout::importer::test
+}  // namespace lookout::data::test

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "tools/import/labelled_scan.hpp"
-#include "tools/import/point_cloud.hpp"
+#include "lab/data/labelled_scan.hpp"
+#include "lab/data/point_cloud.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 
 struct OrganisedCloud {
   static constexpr std::int32_t kNoCell = -1;
@@ -33,4 +33,4 @@ inline constexpr int kMaxCloudColumns = 4096;
 /// Cost: sorting of the points.
 OrganisedCloud Organise(const PointCloud& cloud);
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

@@ -1,15 +1,16 @@
-#include "tools/import/kitti.hpp"
+#include "lab/data/kitti.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "tests/unit/import/cloud_text.hpp"
+#include "tests/unit/data/cloud_text.hpp"
 #include "tools/import/file_bytes.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 namespace {
 
 using namespace test;
+using importer::PointFileError;
 
 std::string FaultOf(const std::string& points, std::optional<std::string_view> labels = std::nullopt) {
   try {
@@ -85,4 +86,4 @@ TEST(Kitti, SaysWhereAFileIsBroken) {
 }
 
 }  // namespace
-}  // namespace lookout::importer
+}  // namespace lookout::data

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace lookout::importer {
+namespace lookout::data {
 
 /// Bytes of a .xz file, unpacked as they are asked for.
 class XzFile {
@@ -33,4 +33,4 @@ class XzFile {
   std::uint64_t num_left_;
 };
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

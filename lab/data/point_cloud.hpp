@@ -5,9 +5,9 @@
 #include <map>
 #include <vector>
 
-#include "tools/import/labelled_scan.hpp"
+#include "lab/data/labelled_scan.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 
 /// In the frame of the sensor: x forward, y left, z up, the sensor at the origin.
 struct CloudPoint {
@@ -29,4 +29,4 @@ struct PointCloud {
 /// As many cells as a scan of LIDAR_SCAN may have (segmenter/wire.hpp), so more points than that are no scan of a lidar.
 inline constexpr std::int64_t kMaxCloudPoints = std::int64_t{1} << 21;
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

@@ -1,4 +1,4 @@
-#include "tools/import/organise.hpp"
+#include "lab/data/organise.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "common/core/angles.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 
 namespace {
 
@@ -217,4 +217,4 @@ OrganisedCloud Organise(const PointCloud& cloud) {
   return result;
 }
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

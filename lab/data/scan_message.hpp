@@ -7,7 +7,7 @@
 #include "lookout/lidar_scan_t.hpp"
 #include "services/segmenter/core/scan.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 
 /// LIDAR_SCAN in parts split by columns, none larger than `max_message_bytes` unless a single column is. Times are those of the computer: a cloud
 /// of others has none by its sensor.
@@ -15,4 +15,4 @@ namespace lookout::importer {
 /// @param model  printable ASCII
 std::vector<lidar_scan_t> ToScanMessages(const segmenter::Scan& scan, const std::string& model, int max_message_bytes);
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

@@ -8,7 +8,7 @@
 
 #include "services/segmenter/core/scan.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 
 /// Ids of returns that no object made.
 inline constexpr std::int32_t kNoTrueObject = 0;  // stray, rain, spray, glint, crest, wake
@@ -26,4 +26,4 @@ struct LabelledScan {
   std::map<std::int32_t, ScanObject> objects;  // all of the scene
 };
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

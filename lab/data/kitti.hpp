@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "tools/import/point_cloud.hpp"
+#include "lab/data/point_cloud.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 
 /// @param points_file  little-endian 32-bit floats: x, y, z in metres, intensity 0 to 1 (kept as 0 to 100)
 /// @param label_file   little-endian 32-bit numbers: class in the lower, instance in the upper 16 bits. nullopt = no labels
@@ -22,4 +22,4 @@ PointCloud ReadKitti(const std::filesystem::path& points_file, const std::option
 PointCloud ParseKitti(std::string_view points, const std::string& points_name, std::optional<std::string_view> labels,
                       const std::string& labels_name);
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lookout::importer {
+namespace lookout::data {
 
 /// A header line, no quotes. Lines are counted from 1, the header's. Memory: a block of 64 KiB and a line, however large the file.
 class CsvFile {
@@ -58,4 +58,4 @@ class CsvFile {
   std::int64_t line_number_ = 0;
 };
 
-}  // namespace lookout::importer
+}  // namespace lookout::data

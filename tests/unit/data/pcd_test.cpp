@@ -1,4 +1,4 @@
-#include "tools/import/pcd.hpp"
+#include "lab/data/pcd.hpp"
 
 #include <unistd.h>
 
@@ -7,13 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/files.hpp"
-#include "tests/unit/import/cloud_text.hpp"
+#include "tests/unit/data/cloud_text.hpp"
 #include "tools/import/file_bytes.hpp"
 
-namespace lookout::importer {
+namespace lookout::data {
 namespace {
 
 using namespace test;
+using importer::PointFileError;
 
 std::string PcdFaultOf(const std::string& bytes) {
   try {
@@ -136,4 +137,4 @@ TEST(Pcd, SaysWhereAPointIsBroken) {
 }
 
 }  // namespace
-}  // namespace lookout::importer
+}  // namespace lookout::data
