@@ -1,7 +1,9 @@
-// Convex hulls, and the rectangle of least area around one.
+// Outlines seen from above: convex hulls, the rectangle of least area around one, the centre of an area.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -41,6 +43,33 @@ void ChainHull(const std::vector<Point>& points, TurnsLeft turns_left, std::vect
 /// @return corners counter-clockwise from that of least x (then y), none of them on the line between its neighbours; one corner where all are at one
 ///         place, two where they are on a line. Cost: n log n.
 std::vector<Eigen::Vector2d> ConvexHull(std::vector<Eigen::Vector2d> places_m, double flat_m2 = 0.0);
+
+/// Centre of an outline, seen from above.
+///
+/// @param vertices  in two or three dimensions, at least one; around the outline in either sense
+/// @return the centroid of the area in x and y (with z of the surface at that place); where the outline has next to no area (a point, a line, or less
+///         than a ten-thousandth of its extent squared) the mean of the vertices
+template <typename Vector>
+Vector AreaCenter(const std::vector<Vector>& vertices) {
+  constexpr double kMinAreaRatio = 1e-4;
+  // Relative to the first vertex: far from the datum the products would lose their digits. A fan of triangles around it.
+  const Vector& origin = vertices.front();
+  double doubled_area_m2 = 0.0;
+  double extent_m2 = 0.0;
+  Vector weighted = Vector::Zero();
+  Vector sum = Vector::Zero();
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    const Vector a = vertices[i - 1] - origin;
+    const Vector b = vertices[i] - origin;
+    const double doubled_triangle_m2 = a.x() * b.y() - a.y() * b.x();
+    doubled_area_m2 += doubled_triangle_m2;
+    weighted += doubled_triangle_m2 * (a + b);
+    extent_m2 = std::max(extent_m2, b.x() * b.x() + b.y() * b.y());
+    sum += b;
+  }
+  if (std::abs(doubled_area_m2) <= 2.0 * kMinAreaRatio * extent_m2) return origin + sum / static_cast<double>(vertices.size());
+  return origin + weighted / (3.0 * doubled_area_m2);
+}
 
 /// Rectangle of least area round a polygon; one of its sides is along an edge.
 struct Rectangle {

@@ -19,7 +19,6 @@ Eigen::Vector2d DirectionOf(double bearing_rad) {
   return {cosine, -sine};
 }
 
-
 // The nearest of some points and edges within a sector.
 class NearestFinder {
  public:

@@ -24,20 +24,20 @@
 #include "lab/data/organise.hpp"
 #include "lab/data/pcd.hpp"
 #include "lab/data/scan_message.hpp"
-#include "lab/eval/captures.hpp"
-#include "lab/eval/figures.hpp"
-#include "lab/eval/leave_out.hpp"
-#include "lab/eval/lost_list.hpp"
-#include "lab/eval/method_comparison.hpp"
-#include "lab/eval/methods.hpp"
-#include "lab/eval/over_time.hpp"
-#include "lab/eval/paper_tests.hpp"
-#include "lab/eval/projection.hpp"
-#include "lab/eval/report_page.hpp"
-#include "lab/eval/result_tables.hpp"
-#include "lab/eval/sweep.hpp"
-#include "lab/eval/track_sources.hpp"
-#include "lab/eval/worst_pictures.hpp"
+#include "lab/eval/methods/captures.hpp"
+#include "lab/eval/methods/figures.hpp"
+#include "lab/eval/methods/leave_out.hpp"
+#include "lab/eval/methods/lost_list.hpp"
+#include "lab/eval/methods/method_comparison.hpp"
+#include "lab/eval/methods/methods.hpp"
+#include "lab/eval/methods/paper_tests.hpp"
+#include "lab/eval/methods/projection.hpp"
+#include "lab/eval/methods/result_tables.hpp"
+#include "lab/eval/methods/sweep.hpp"
+#include "lab/eval/methods/worst_pictures.hpp"
+#include "lab/eval/report/report_page.hpp"
+#include "lab/eval/tracks/over_time.hpp"
+#include "lab/eval/tracks/track_sources.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "tools/replay/chain.hpp"
 
@@ -308,7 +308,8 @@ int CompareMethods(const ComparisonOptions& options) {
 
   PrintTables(results, std::cout);
   failures.Write();
-  if (!options.csv_folder.empty()) WriteCsv(results, options.csv_folder, options.is_forced);
+  const auto tables = TablesOf(results);
+  TableFiles(options.csv_folder, tables, options.is_forced).Commit(tables);
   if (page) {
     WriteHtml(results, page->stream());
     page->Commit();

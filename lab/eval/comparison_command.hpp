@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/eval/run_plan.hpp"
+#include "lab/eval/methods/run_plan.hpp"
 
 namespace lookout::eval {
 

@@ -14,11 +14,11 @@
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
 #include "common/runtime/version.hpp"
-#include "lab/eval/alert_command.hpp"
 #include "lab/eval/comparison_command.hpp"
 #include "lab/eval/log_command.hpp"
-#include "lab/eval/track_autoferry.hpp"
-#include "lab/eval/track_command.hpp"
+#include "lab/eval/tracks/alert_command.hpp"
+#include "lab/eval/tracks/track_autoferry.hpp"
+#include "lab/eval/tracks/track_command.hpp"
 
 namespace {
 

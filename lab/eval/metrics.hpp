@@ -1,9 +1,13 @@
 // Figures of merit of segmentation, and summaries of distances.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace lookout::eval {
@@ -23,6 +27,27 @@ struct Mean {
 
   bool operator==(const Mean&) const = default;
 };
+
+/// Adds counts, sums, what has an Add of its own, and arrays and maps of these.
+template <typename Sum>
+void AddMember(Sum& sum, const Sum& other) {
+  if constexpr (std::is_arithmetic_v<Sum>) {
+    sum += other;
+  } else if constexpr (requires { sum.Add(other); }) {
+    sum.Add(other);
+  } else if constexpr (requires { typename Sum::mapped_type; }) {
+    for (const auto& [key, value] : other) AddMember(sum[key], value);
+  } else {
+    for (std::size_t i = 0; i < sum.size(); ++i) AddMember(sum[i], other[i]);
+  }
+}
+
+/// The same of each member. @param sums, others  of the same members, by std::tie
+template <typename... Member>
+void AddEach(const std::tuple<Member&...>& sums, const std::tuple<const Member&...>& others) {
+  [&]<std::size_t... kPlace>(std::index_sequence<kPlace...>) { (AddMember(std::get<kPlace>(sums), std::get<kPlace>(others)), ...); }
+  (std::index_sequence_for<Member...>());
+}
 
 /// A segment or an object counts as cut, or as merged, by parts of at least this share of an object's returns.
 inline constexpr int kLeastPartsOfObject = 10;  // a tenth

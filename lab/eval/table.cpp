@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 #include "common/core/printable.hpp"
 
@@ -54,10 +56,7 @@ Table Table::Select(const std::vector<std::size_t>& columns, const std::function
 }
 
 void Table::PrintCsv(std::ostream& out) const {
-  for (const auto& row : rows_) {
-    for (std::size_t column = 0; column < row.size(); ++column) out << (column > 0 ? "," : "") << CsvCell(row[column]);
-    out << '\n';
-  }
+  for (const auto& row : rows_) out << CsvRow(row);
 }
 
 std::string Table::ToMarkdown() const {
@@ -81,5 +80,44 @@ std::string Table::ToMarkdown() const {
 std::string Number(double value, int decimals) { return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-"; }
 
 std::string Number(std::int64_t value) { return std::to_string(value); }
+
+std::string NumberOrNever(double value, int decimals) { return std::isinf(value) ? "never" : Number(value, decimals); }
+
+std::string Percent(double share, int decimals) { return Number(100.0 * share, decimals); }
+
+double ShareOf(std::int64_t part, std::int64_t all) {
+  return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string CsvRow(const Table::Row& cells) {
+  std::string line;
+  for (const auto& cell : cells) line += (&cell == &cells.front() ? "" : ",") + CsvCell(cell);
+  return line + '\n';
+}
+
+void PrintTables(const std::vector<NamedTable>& tables, std::ostream& out) {
+  for (const auto& [name, title, table, is_printed] : tables) {
+    if (table.empty() || !is_printed) continue;
+    out << title << '\n';
+    table.Print(out);
+    out << '\n';
+  }
+}
+
+TableFiles::TableFiles(const std::filesystem::path& folder, const std::vector<NamedTable>& tables, bool is_forced) {
+  if (folder.empty()) return;
+  std::filesystem::create_directories(folder);
+  files_.reserve(tables.size());
+  for (const auto& table : tables) {
+    files_.push_back(std::make_unique<io::OutputFile>(folder / (table.name + ".csv"), io::OutputOptions{.force = is_forced}));
+  }
+}
+
+void TableFiles::Commit(const std::vector<NamedTable>& tables) {
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    tables.at(i).table.PrintCsv(files_[i]->stream());
+    files_[i]->Commit();
+  }
+}
 
 }  // namespace lookout::eval

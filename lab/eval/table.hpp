@@ -1,10 +1,15 @@
-// Aligned text.
+// Tables of figures: as aligned text, Markdown and CSV files.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
+
+#include "common/io/output_file.hpp"
 
 namespace lookout::eval {
 
@@ -30,7 +35,6 @@ class Table {
 
   void Print(std::ostream& out) const;
 
-  /// As RFC 4180 has it, but for line ends of Unix.
   void PrintCsv(std::ostream& out) const;
 
   std::string ToMarkdown() const;
@@ -39,8 +43,44 @@ class Table {
   std::vector<Row> rows_;
 };
 
-/// @return fixed decimals; "-" when the value is not a number
+struct NamedTable {
+  std::string name;  // of its file, without ending
+  std::string title;
+  Table table;
+  bool is_printed = true;  // else in a file alone: too long for a screen, or of interest to few
+};
+
+/// Those that are not empty and are to be printed, each under its title.
+void PrintTables(const std::vector<NamedTable>& tables, std::ostream& out);
+
+/// CSV files of tables that are measured for a long time: opened before all work, so that a fault shows at once.
+class TableFiles {
+ public:
+  /// Makes the folder, and opens NAME.csv for each table.
+  ///
+  /// @param folder  empty: nothing is written
+  /// @param tables  may lack their rows
+  /// @throws std::runtime_error when a file is there and not forced, or cannot be written
+  TableFiles(const std::filesystem::path& folder, const std::vector<NamedTable>& tables, bool is_forced);
+
+  /// The same tables in their order, with rows.
+  void Commit(const std::vector<NamedTable>& tables);
+
+ private:
+  std::vector<std::unique_ptr<io::OutputFile>> files_;
+};
+
+/// A line of a CSV file: as RFC 4180 has it, but for its end, which is that of Unix. Texts are as CsvText; numbers stay as they are.
+std::string CsvRow(const Table::Row& cells);
+
+/// @return fixed decimals; "-" when the value is not a finite number
 std::string Number(double value, int decimals);
 std::string Number(std::int64_t value);
+/// "never" where the value is infinite.
+std::string NumberOrNever(double value, int decimals);
+/// A share in per cent.
+std::string Percent(double share, int decimals = 1);
+/// NaN of nothing.
+double ShareOf(std::int64_t part, std::int64_t all);
 
 }  // namespace lookout::eval

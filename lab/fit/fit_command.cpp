@@ -12,7 +12,7 @@
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/version.hpp"
-#include "lab/eval/run_plan.hpp"
+#include "lab/eval/methods/run_plan.hpp"
 #include "lab/fit/fit_evidence.hpp"
 #include "lab/sim/scene_file.hpp"
 

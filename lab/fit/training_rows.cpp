@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "lab/eval/outcome.hpp"
+#include "lab/eval/methods/outcome.hpp"
 
 namespace lookout::fit {
 namespace {

@@ -14,7 +14,7 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/config/boat.hpp"
-#include "lab/eval/evaluation.hpp"
+#include "lab/eval/report/evaluation.hpp"
 #include "lab/sim/simulation.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/scenes.hpp"

@@ -8,7 +8,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
-#include "lab/eval/track_sources.hpp"
+#include "lab/eval/tracks/track_sources.hpp"
 #include "lookout/alerts_t.hpp"
 #include "tests/support/files.hpp"
 #include "tools/replay/chain.hpp"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "lab/eval/track_run.hpp"
-#include "lab/eval/track_sources.hpp"
+#include "lab/eval/tracks/track_run.hpp"
+#include "lab/eval/tracks/track_sources.hpp"
 #include "tests/support/files.hpp"
 #include "tools/replay/chain.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/eval/multi_object_tracker.hpp"
+#include "lab/eval/tracks/multi_object_tracker.hpp"
 
 namespace lookout::eval {
 

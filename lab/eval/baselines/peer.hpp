@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "lab/eval/method.hpp"
+#include "lab/eval/methods/method.hpp"
 #include "services/segmenter/core/paper/breadth_first_search.hpp"
 #include "services/segmenter/core/returns.hpp"
 

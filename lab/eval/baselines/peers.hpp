@@ -1,7 +1,7 @@
 // The peers in one run: what others do, on their published defaults and tuned on our scenes. All are written by us from the papers.
 #pragma once
 
-#include "lab/eval/method.hpp"
+#include "lab/eval/methods/method.hpp"
 #include "services/segmenter/core/returns.hpp"
 
 namespace lookout::eval {

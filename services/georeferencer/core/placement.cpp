@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/core/angles.hpp"
+#include "common/core/convex.hpp"
 #include "common/core/elementary.hpp"
 #include "common/core/frames.hpp"
 #include "common/core/geodesy.hpp"
@@ -18,9 +19,6 @@ using Eigen::Matrix2d;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-// Area over extent squared below which an outline counts as a line: there the centroid divides two numbers that are rounding errors.
-constexpr double kMinAreaRatio = 1e-4;
 
 Isometry3d TransformMapVessel(const Place& place) {
   Isometry3d T_map_vessel = Isometry3d::Identity();
@@ -141,25 +139,7 @@ VesselOutline OutlineOf(const Segment& segment, const Isometry3d& T_vessel_lidar
           T_vessel_lidar * segment.nearest_m};
 }
 
-Vector3d FootprintCenter(const std::vector<Vector3d>& vertices) {
-  // Relative to the first vertex: far from the datum the products would lose their digits. A fan of triangles around it.
-  const Vector3d& origin = vertices.front();
-  double doubled_area_m2 = 0.0;
-  double extent_m2 = 0.0;
-  Vector3d weighted = Vector3d::Zero();
-  Vector3d sum = Vector3d::Zero();
-  for (std::size_t i = 1; i < vertices.size(); ++i) {
-    const Vector3d a = vertices[i - 1] - origin;
-    const Vector3d b = vertices[i] - origin;
-    const double doubled_triangle_m2 = a.x() * b.y() - a.y() * b.x();
-    doubled_area_m2 += doubled_triangle_m2;
-    weighted += doubled_triangle_m2 * (a + b);
-    extent_m2 = std::max(extent_m2, b.head<2>().squaredNorm());
-    sum += b;
-  }
-  if (std::abs(doubled_area_m2) <= 2.0 * kMinAreaRatio * extent_m2) return origin + sum / static_cast<double>(vertices.size());
-  return origin + weighted / (3.0 * doubled_area_m2);
-}
+Vector3d FootprintCenter(const std::vector<Vector3d>& vertices) { return AreaCenter(vertices); }
 
 Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params) {
   const Matrix3d by_heading = pose.R_map_here * RotationAboutZ(kPi / 2.0 - pose.heading_rad);

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/eval/captures.hpp"
+#include "lab/eval/methods/captures.hpp"
 #include "lab/sim/lidar.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "lab/sim/sinks.hpp"

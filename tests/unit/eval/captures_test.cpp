@@ -1,12 +1,12 @@
 // Captures with truth: what is read is what was rendered, and what is wrong is told with file and line.
-#include "lab/eval/captures.hpp"
+#include "lab/eval/methods/captures.hpp"
 
 #include <algorithm>
 #include <numeric>
 
 #include "lab/data/xz_file.hpp"
-#include "lab/eval/method_comparison.hpp"
-#include "lab/eval/methods.hpp"
+#include "lab/eval/methods/method_comparison.hpp"
+#include "lab/eval/methods/methods.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/eval/captures_fixture.hpp"
 

@@ -1,5 +1,5 @@
 // Stated probabilities: thresholds and reliability, worked out by hand.
-#include "lab/eval/confidence.hpp"
+#include "lab/eval/methods/confidence.hpp"
 
 #include <algorithm>
 #include <cmath>

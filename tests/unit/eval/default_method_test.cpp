@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "lab/eval/method_comparison.hpp"
-#include "lab/eval/methods.hpp"
+#include "lab/eval/methods/method_comparison.hpp"
+#include "lab/eval/methods/methods.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::eval {

@@ -1,11 +1,11 @@
-#include "lab/eval/evaluation.hpp"
+#include "lab/eval/report/evaluation.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
 #include <sstream>
 
 #include "common/core/angles.hpp"
-#include "lab/eval/report.hpp"
+#include "lab/eval/report/report.hpp"
 #include "tests/unit/eval/truth_fixture.hpp"
 
 namespace lookout::eval {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "lab/eval/lost_list.hpp"
-#include "lab/eval/scoring.hpp"
-#include "lab/eval/worst_pictures.hpp"
+#include "lab/eval/methods/lost_list.hpp"
+#include "lab/eval/methods/scoring.hpp"
+#include "lab/eval/methods/worst_pictures.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::eval {

@@ -1,5 +1,5 @@
 // Figures of README files: a block shows what the run has made, and nothing else.
-#include "lab/eval/figures.hpp"
+#include "lab/eval/methods/figures.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "lab/eval/label_entropy.hpp"
+#include "lab/eval/methods/label_entropy.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

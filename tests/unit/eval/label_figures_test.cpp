@@ -1,4 +1,4 @@
-#include "lab/eval/label_figures.hpp"
+#include "lab/eval/methods/label_figures.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

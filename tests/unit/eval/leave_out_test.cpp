@@ -1,12 +1,12 @@
 // Families that are left out: which evidence is used where, what is refused, and the tables.
-#include "lab/eval/leave_out.hpp"
+#include "lab/eval/methods/leave_out.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <stdexcept>
 
-#include "lab/eval/leave_out_tables.hpp"
-#include "lab/eval/run_plan.hpp"
+#include "lab/eval/methods/leave_out_tables.hpp"
+#include "lab/eval/methods/run_plan.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::eval {

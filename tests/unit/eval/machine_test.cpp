@@ -1,9 +1,9 @@
-#include "lab/eval/machine.hpp"
+#include "lab/eval/report/machine.hpp"
 
 #include <gtest/gtest.h>
 #include <sstream>
 
-#include "lab/eval/report.hpp"
+#include "lab/eval/report/report.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -1,5 +1,5 @@
 // From scenes to figures: truth joined to its cells, methods, curves and tables.
-#include "lab/eval/method_comparison.hpp"
+#include "lab/eval/methods/method_comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,13 +11,13 @@
 #include <sstream>
 
 #include "common/config/text_config.hpp"
-#include "lab/eval/against_peers.hpp"
-#include "lab/eval/methods.hpp"
-#include "lab/eval/paper_tests.hpp"
-#include "lab/eval/projection.hpp"
-#include "lab/eval/result_tables.hpp"
-#include "lab/eval/scoring.hpp"
-#include "lab/eval/sweep.hpp"
+#include "lab/eval/methods/against_peers.hpp"
+#include "lab/eval/methods/methods.hpp"
+#include "lab/eval/methods/paper_tests.hpp"
+#include "lab/eval/methods/projection.hpp"
+#include "lab/eval/methods/result_tables.hpp"
+#include "lab/eval/methods/scoring.hpp"
+#include "lab/eval/methods/sweep.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::eval {

@@ -1,5 +1,5 @@
 // Which things lie near land: distances in space between returns.
-#include "lab/eval/near_land.hpp"
+#include "lab/eval/methods/near_land.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

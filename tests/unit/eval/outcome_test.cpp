@@ -1,5 +1,5 @@
 // What becomes of things: answers worked out by hand, and the law that ids of segments are names only.
-#include "lab/eval/outcome.hpp"
+#include "lab/eval/methods/outcome.hpp"
 
 #include <gtest/gtest.h>
 

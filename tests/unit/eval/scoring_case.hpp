@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lab/eval/scoring.hpp"
+#include "lab/eval/methods/scoring.hpp"
 
 namespace lookout::eval {
 

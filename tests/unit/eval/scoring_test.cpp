@@ -1,5 +1,5 @@
 // Scores: answers worked out by hand.
-#include "lab/eval/scoring.hpp"
+#include "lab/eval/methods/scoring.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

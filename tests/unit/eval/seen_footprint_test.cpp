@@ -1,4 +1,4 @@
-#include "lab/eval/seen_footprint.hpp"
+#include "lab/eval/report/seen_footprint.hpp"
 
 #include <gtest/gtest.h>
 

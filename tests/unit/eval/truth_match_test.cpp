@@ -1,4 +1,4 @@
-#include "lab/eval/truth_match.hpp"
+#include "lab/eval/report/truth_match.hpp"
 
 #include <gtest/gtest.h>
 

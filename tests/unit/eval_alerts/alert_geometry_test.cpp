@@ -1,4 +1,4 @@
-#include "lab/eval/alert_geometry.hpp"
+#include "lab/eval/tracks/alert_geometry.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "common/core/angles.hpp"
-#include "lab/eval/track_geometry.hpp"
+#include "lab/eval/tracks/track_geometry.hpp"
 #include "tests/unit/eval_tracks/track_cases.hpp"
 
 namespace lookout::eval {

@@ -1,5 +1,5 @@
 // Situations drawn by hand: the own boat is a square of 2 m that goes north, or lies at the origin.
-#include "lab/eval/alert_judge.hpp"
+#include "lab/eval/tracks/alert_judge.hpp"
 
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "lab/eval/alert_kept.hpp"
+#include "lab/eval/tracks/alert_kept.hpp"
 
 #include <chrono>
 #include <filesystem>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/eval/track_sources.hpp"
+#include "lab/eval/tracks/track_sources.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::eval {

@@ -1,5 +1,5 @@
 // From the messages of a run to verdicts.
-#include "lab/eval/alert_run.hpp"
+#include "lab/eval/tracks/alert_run.hpp"
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
-#include "lab/eval/track_sources.hpp"
+#include "lab/eval/tracks/track_sources.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/eval_tracks/track_cases.hpp"

@@ -1,10 +1,10 @@
-#include "lab/eval/alert_tables.hpp"
+#include "lab/eval/tracks/alert_tables.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
 
 #include "common/core/angles.hpp"
-#include "lab/eval/figures.hpp"
+#include "lab/eval/methods/figures.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lab/eval/method.hpp"
+#include "lab/eval/methods/method.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
 
 namespace lookout::eval::test {

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "lab/eval/report_page.hpp"
+#include "lab/eval/report/report_page.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/eval_report/made_up.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/eval/results.hpp"
+#include "lab/eval/methods/results.hpp"
 
 namespace lookout::eval {
 

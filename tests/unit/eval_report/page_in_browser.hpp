@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lab/eval/report_page.hpp"
+#include "lab/eval/report/report_page.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::eval {

@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 
-#include "lab/eval/track_autoferry.hpp"
-#include "lab/eval/track_command.hpp"
+#include "lab/eval/tracks/track_autoferry.hpp"
+#include "lab/eval/tracks/track_command.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::eval {

@@ -1,12 +1,12 @@
-#include "lab/eval/over_time.hpp"
+#include "lab/eval/tracks/over_time.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <stdexcept>
 #include <vector>
 
-#include "lab/eval/run_plan.hpp"
-#include "lab/eval/scoring.hpp"
+#include "lab/eval/methods/run_plan.hpp"
+#include "lab/eval/methods/scoring.hpp"
 #include "services/segmenter/core/segmenter.hpp"
 #include "tests/support/files.hpp"
 

@@ -1,4 +1,4 @@
-#include "lab/eval/track_labels.hpp"
+#include "lab/eval/tracks/track_labels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Whole runs: simulated, out of captures, and message by message.
-#include "lab/eval/track_run.hpp"
+#include "lab/eval/tracks/track_run.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -10,9 +10,9 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "lab/eval/baselines/nearest_neighbour.hpp"
-#include "lab/eval/track_sources.hpp"
-#include "lab/eval/track_tables.hpp"
-#include "lab/eval/track_targets.hpp"
+#include "lab/eval/tracks/track_sources.hpp"
+#include "lab/eval/tracks/track_tables.hpp"
+#include "lab/eval/tracks/track_targets.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "tests/support/files.hpp"
 #include "tools/replay/chain.hpp"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "lab/eval/track_geometry.hpp"
+#include "lab/eval/tracks/track_geometry.hpp"
 #include "tests/unit/eval_tracks/track_cases.hpp"
 
 namespace lookout::eval {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "lab/eval/track_gospa.hpp"
+#include "lab/eval/tracks/track_gospa.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::eval {

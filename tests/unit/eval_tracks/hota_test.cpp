@@ -1,5 +1,5 @@
 // HOTA by hand. One thing of 2 m and tracks of 2 m: two centres that are 2 m + g apart have a gap of g.
-#include "lab/eval/hota.hpp"
+#include "lab/eval/tracks/hota.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "lab/eval/track_metrics.hpp"
+#include "lab/eval/tracks/track_metrics.hpp"
 #include "tests/unit/eval_tracks/track_cases.hpp"
 
 namespace lookout::eval {

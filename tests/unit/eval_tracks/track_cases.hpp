@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "lab/eval/track_geometry.hpp"
-#include "lab/eval/track_metrics.hpp"
+#include "lab/eval/tracks/track_geometry.hpp"
+#include "lab/eval/tracks/track_metrics.hpp"
 
 namespace lookout::eval {
 

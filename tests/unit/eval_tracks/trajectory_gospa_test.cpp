@@ -1,5 +1,5 @@
 // T-GOSPA by hand, and against the least cost of all assignments of small cases.
-#include "lab/eval/trajectory_gospa.hpp"
+#include "lab/eval/tracks/trajectory_gospa.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,106 @@
+#include "lab/eval/methods/render.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <stdexcept>
+#include <utility>
+
+#include "common/bus/channels.hpp"
+#include "common/messages/checks.hpp"
+#include "lab/sim/lidar.hpp"
+#include "services/segmenter/params.hpp"
+#include "services/segmenter/wire.hpp"
+#include "services/vlp16/core/decoder.hpp"
+#include "services/vlp16/wire.hpp"
+
+namespace lookout::eval {
+namespace {
+
+using namespace std::chrono_literals;
+
+// As lookout-sim begins: any date serves, as long as it is always the same.
+constexpr Utime kStart{1'781'532'600'000'000us};
+// Sending takes 100 us at 100 Mbit/s.
+constexpr auto kLatency = 150us;
+
+struct Truth {
+  int ring;
+  int return_index;
+  std::int32_t object_id;
+};
+
+static_assert(sim::kNoObject == kNoTrueObject && sim::kOwnVessel == kOwnVesselObject);
+
+// Takes the truth of each cell with a return, column by column. Within a column the order is that of lasers there and of rings here.
+std::vector<std::int32_t> TakeObjects(const segmenter::Scan& scan, std::deque<Truth>& truths) {
+  const auto num_rings = static_cast<std::size_t>(scan.head.num_rings());
+  const auto num_returns = static_cast<std::size_t>(scan.head.num_returns);
+  const std::size_t column_cells = num_rings * num_returns;
+  std::vector<std::int32_t> object(scan.num_cells(), kNoTrueObject);
+  for (std::size_t first = 0; first < scan.num_cells(); first += column_cells) {
+    std::size_t num_left = 0;
+    for (std::size_t i = 0; i < column_cells; ++i) num_left += scan.columns.range[first + i] != 0 ? 1 : 0;
+    std::vector<bool> is_taken(column_cells, false);
+    for (; num_left > 0; --num_left) {
+      if (truths.empty()) throw std::logic_error("a simulated scan has returns without truth");
+      const Truth truth = truths.front();
+      truths.pop_front();
+      const std::size_t i = static_cast<std::size_t>(truth.ring) * num_returns + static_cast<std::size_t>(truth.return_index);
+      if (i >= column_cells || scan.columns.range[first + i] == 0 || is_taken[i]) {
+        throw std::logic_error("the truth of a simulated scan does not fit its returns");
+      }
+      is_taken[i] = true;
+      object[first + i] = truth.object_id;
+    }
+  }
+  return object;
+}
+
+}  // namespace
+
+Boat LoadBoat(const std::filesystem::path& config_folder) {
+  return {config_folder, config::LoadBoat(config_folder), vlp16::LoadParams(config_folder), segmenter::LoadParams(config_folder)};
+}
+
+std::optional<segmenter::Scan> ScanOfMessages(const std::vector<lidar_scan_t>& parts) {
+  if (std::ranges::any_of(parts, [](const auto& part) { return messages::FaultOf(part, bus::kMaxMessageBytes).has_value(); })) return std::nullopt;
+  return segmenter::ToScan(parts);
+}
+
+segmenter::Scan ToSegmenterScan(const vlp16::Scan& scan, bool use_vertical_origin_offsets) {
+  auto received = ScanOfMessages(vlp16::ToScanMessages(scan, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes));
+  if (!received) throw std::logic_error("the segmenter refuses a scan of the decoder");
+  return std::move(*received);
+}
+
+void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {
+  LabelledScan labelled;
+  for (const auto& object : scene.objects) labelled.objects[object.id] = {object.name, object.kind, object.is_in_water};
+
+  std::deque<Truth> truths;
+  vlp16::Decoder decoder(
+      boat.lidar.decoder,
+      [&](const vlp16::Scan& scan) {
+        labelled.scan = ToSegmenterScan(scan, boat.lidar.use_vertical_origin_offsets);
+        labelled.object = TakeObjects(labelled.scan, truths);
+        if (!scan.is_partial_start && !scan.is_partial_end) on_scan(labelled);
+      },
+      [](const vlp16::SentenceOfLidar&) {});
+
+  sim::LidarParams params;
+  params.use_vertical_origin_offsets = boat.lidar.use_vertical_origin_offsets;
+  sim::Lidar lidar(scene, boat.facts, params, kStart, seed);
+  const Utime end = kStart + std::chrono::microseconds(std::llround(seconds * 1e6));
+  for (auto packet = lidar.Next(); packet.end_time <= end; packet = lidar.Next()) {
+    for (const auto& one : packet.returns) truths.push_back({one.ring, one.return_index, one.object_id});
+    if (!decoder.OnDataPayload(packet.end_time + kLatency, packet.payload)) {
+      throw std::logic_error("a simulated packet is refused: " + decoder.last_refusal());
+    }
+  }
+  decoder.Flush();
+  if (!truths.empty()) throw std::logic_error("the truth of a simulated scan does not fit its returns");
+}
+
+}  // namespace lookout::eval

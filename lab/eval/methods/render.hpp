@@ -1,0 +1,48 @@
+// Scans of a simulated scene with the truth about each return, on the way that packets of the sensor take.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "common/config/boat.hpp"
+#include "lab/eval/methods/method.hpp"
+#include "lab/sim/scene.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "services/segmenter/core/segmenter.hpp"
+#include "services/vlp16/core/scan.hpp"
+#include "services/vlp16/params.hpp"
+
+namespace lookout::eval {
+
+/// The boat that is simulated and scored.
+struct Boat {
+  std::filesystem::path config_folder;
+  config::BoatFacts facts;
+  vlp16::Params lidar;
+  segmenter::Params segmenter;
+};
+
+/// @throws config::ConfigError
+Boat LoadBoat(const std::filesystem::path& config_folder);
+
+/// What the segmenter makes of the parts of a scan; nullopt when it refuses one, or one is missing
+std::optional<segmenter::Scan> ScanOfMessages(const std::vector<lidar_scan_t>& parts);
+
+/// What the segmenter receives of this scan over messages, without a bus. @throws std::logic_error when it would refuse it
+segmenter::Scan ToSegmenterScan(const vlp16::Scan& scan, bool use_vertical_origin_offsets);
+
+using ScanHandler = std::function<void(const LabelledScan&)>;
+
+/// Lets the simulated lidar look at a scene, decodes its packets as lookout-vlp16 does, and hands on each whole scan, one at a time. The truth joins
+/// its cell exactly: no packet is lost on the way, so that the returns of the packets and those of the columns follow each other one by one.
+///
+/// @param scene    outlives the call
+/// @param seed     of the sensor
+/// @param seconds  of firing; the begun scans at both ends are left out
+/// Deterministic. Cost: that of the simulation. @throws std::logic_error when a packet was refused or truth and cells do not agree
+void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan);
+
+}  // namespace lookout::eval

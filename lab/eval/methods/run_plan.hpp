@@ -1,0 +1,45 @@
+// What is rendered: scenes, and which seeds of them may choose values and which may make tables.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lab/eval/methods/render.hpp"
+
+namespace lookout::eval {
+
+/// Seeds of sweeps, and of every choice of a default: ours (1 to 4) and the peers' (1 to 4) were chosen on these. The guards of the tests, too.
+inline constexpr std::uint64_t kFirstTuningSeed = 1;
+inline constexpr std::uint64_t kLastTuningSeed = 100;
+
+/// Seeds of tables and figures: these and above. Nothing was ever chosen on them: a figure on seeds that chose the method flatters it.
+inline constexpr std::uint64_t kFirstTableSeed = 101;
+
+enum class SeedUse { kTuning, kTables };
+
+struct RunPlan {
+  std::vector<std::string> scenes;  // names or files (sim::FindScene)
+  std::uint64_t first_seed = 1;
+  int num_seeds = 1;
+  double seconds = 2.0;  // of each scene and seed
+
+  /// @throws std::invalid_argument when one of the seeds is of the other range; says both ranges
+  void CheckSeeds(SeedUse use) const;
+};
+
+/// As it stands in tables: the name itself, or that of the file without folder and ending.
+std::string SceneLabel(const std::string& name_or_path);
+
+/// Renders scene after scene, seed after seed, and calls with each scan.
+///
+/// @param progress  for people (runtime::Progress); nullptr: silent
+/// @param program   whose lines they are
+/// @throws config::ConfigError for scenes that are wrong, with the faults of all: each is laid out with each of its seeds before the first is
+/// rendered
+void ForEachScan(const RunPlan& plan, const Boat& boat, std::FILE* progress,
+                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_scan, const std::string& program = "lookout-eval");
+
+}  // namespace lookout::eval

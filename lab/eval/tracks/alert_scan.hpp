@@ -1,0 +1,63 @@
+// What alerts are judged on: what is true after one scan, and what ALERTS say of it. Map frame: east, north at one datum.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lab/eval/tracks/alert_geometry.hpp"
+
+namespace lookout::eval {
+
+/// What an alert names by its track.
+struct AlertTrackPlace {
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  Polygon outline_m;  // empty: the position alone is known
+};
+
+/// One alert of one message, as much of it as is judged: ToJudgedAlert makes it.
+struct JudgedAlert {
+  std::int64_t id = 0;
+  bool is_of_zone = false;  // at least one of these two
+  bool is_of_approach = false;
+  bool is_warning = false;               // else a caution
+  bool holds = false;                    // active or acknowledged: not over
+  bool is_open = false;                  // holds, and nobody has acknowledged it
+  std::int64_t track_id = 0;             // 0 = of none: land, or what has none
+  std::optional<AlertTrackPlace> track;  // where TRACKS had it last; nullopt: they never did
+  double distance_m = 0.0;               // told: from the own hull, of a zone from the reference point
+  double bearing_rad = 0.0;              // told: from the bow clockwise
+  std::string text;
+};
+
+/// A true object after a scan.
+struct AlertThing {
+  int id = 0;     // 1, 2, ...
+  int group = 0;  // the same for pieces of land and structures that belong together; else the id
+  std::string name;
+  std::string kind;
+  bool is_in_water = false;  // a boat, swimmer, buoy, marker: what is not is land, or a structure
+  std::shared_ptr<const HullOutline> outline_m;
+  MovingHull motion;
+  int num_returns = 0;  // in this scan
+};
+
+/// The own boat after a scan.
+struct AlertOwnBoat {
+  Polygon hull_m;
+  Eigen::Vector2d reference_m = Eigen::Vector2d::Zero();  // its reference point
+  double heading_rad = 0.0;                               // from north clockwise
+  MovingHull motion;
+};
+
+struct AlertScan {
+  std::int64_t utime_us = 0;  // end of the scan
+  AlertOwnBoat own;
+  std::vector<AlertThing> things;
+  std::vector<JudgedAlert> alerts;
+};
+
+}  // namespace lookout::eval

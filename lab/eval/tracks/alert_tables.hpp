@@ -1,0 +1,35 @@
+// Tables of scores of alerts. ALERTS.md defines the columns.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lab/eval/table.hpp"
+#include "lab/eval/tracks/alert_scores.hpp"
+
+namespace lookout::eval {
+
+/// What alerts scored on the runs of a scene.
+struct AlertRow {
+  std::string scene;  // with "second world: " before it, or as it is
+  AlertScores scores;
+};
+
+/// Scenes of one world, called `name`.
+struct AlertWorld {
+  std::string name;
+  std::vector<AlertRow> scenes;  // one row of each (AddUpAlerts)
+  std::string over_all;          // what the row over all of them is called
+};
+
+/// One row of each scene: runs of one are added. Order: as they come first.
+std::vector<AlertRow> AddUpAlerts(const std::vector<AlertRow>& runs);
+
+/// Targets first, then the scenes, and behind those of a world one row over all of them. The same tables, without rows, of no world.
+std::vector<NamedTable> AlertTablesOf(const std::vector<AlertWorld>& worlds);
+
+/// Header and a row of a list of events, as CSV.
+std::string AlertEventHeader();
+std::string AlertEventRow(const std::string& scene, std::uint64_t seed, const AlertEvent& event);
+
+}  // namespace lookout::eval

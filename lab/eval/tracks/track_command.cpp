@@ -1,0 +1,183 @@
+#include "lab/eval/tracks/track_command.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+#include <ostream>
+#include <stdexcept>
+#include <utility>
+
+#include "common/config/text_config.hpp"
+#include "common/io/output_file.hpp"
+#include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
+#include "config/schema/tracker.pb.h"
+#include "lab/eval/baselines/nearest_neighbour.hpp"
+#include "lab/eval/methods/figures.hpp"
+#include "lab/eval/table.hpp"
+#include "lab/eval/tracks/track_run.hpp"
+#include "lab/eval/tracks/track_sources.hpp"
+#include "lab/eval/tracks/track_tables.hpp"
+#include "lab/eval/tracks/track_targets.hpp"
+#include "lab/sim/scene_file.hpp"
+#include "tools/replay/chain.hpp"
+
+namespace lookout::eval {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of the returns of the chain's scans, at least so many are in the truth: else the two do not belong together.
+constexpr double kLeastJoined = 0.99;
+
+ApproachLimits LimitsOf(const fs::path& config_folder) {
+  const auto tracker = config::Load<config::Tracker>(config_folder, "tracker.txtpb");
+  return {tracker.cpa_limit_m(), tracker.look_ahead_s()};
+}
+
+// One run: `feed` is called with the handler of its datagrams.
+template <typename Feed>
+std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string& scene, Truth& truth, const Feed& feed) {
+  const auto limits = LimitsOf(config_folder);
+  std::optional<TrackRun> run;
+  replay::Chain chain(config_folder, {}, [&](Utime, std::string_view channel, Bytes bytes) {
+    if (!run->Add(channel, bytes)) throw std::runtime_error(scene + ": a message on " + std::string(channel) + " cannot be used");
+  });
+  feed([&](const replay::Datagram& datagram) {
+    io::ThrowIfStopAsked();
+    if (!run) run.emplace(truth, MakeTrackers(), TrackRun::Returns::kForgotten, limits);  // the truth knows its objects now
+    chain.OnDatagram(datagram);
+  });
+  if (!run) throw std::runtime_error(scene + ": no datagram");
+  chain.Finish();
+  run->Finish();
+  if (run->num_scans() == 0) throw std::runtime_error(scene + ": no whole scan with a known position");
+  if (!(run->JoinedShare() >= kLeastJoined)) {
+    throw std::runtime_error(
+        fmt::format("{}: the truth is of another run: only {:.1f} % of the returns are in it", scene, 100.0 * run->JoinedShare()));
+  }
+  std::vector<TrackRow> rows;
+  for (auto& row : run->Rows()) rows.push_back({scene, std::move(row)});
+  return rows;
+}
+
+// Of one run.
+void WriteEvents(const std::vector<TrackRow>& rows, std::uint64_t seed, const Truth& truth, std::ostream& out) {
+  constexpr std::array<std::string_view, 5> kNames{"missed", "false", "switch", "moving", "standing"};
+  for (const auto& [scene, row] : rows) {
+    for (const auto& event : row.scores.events) {
+      const auto name_of = [&truth](std::int64_t thing) { return thing == 0 ? std::string() : truth.objects().at(static_cast<int>(thing)).name; };
+      const auto nearest = event.what == TrackEvent::What::kFalse ? name_of(event.nearest) : std::to_string(event.nearest);
+      out << CsvRow({scene, std::to_string(seed), row.tracker, Number(event.utime_us), std::string(kNames.at(static_cast<std::size_t>(event.what))),
+                     name_of(event.thing), std::to_string(event.num_returns), Number(event.track), Number(event.position_m.x(), 2),
+                     Number(event.position_m.y(), 2), nearest, fmt::format("{:.2f}", event.nearest_gap_m), Number(event.speed_mps, 2)});
+    }
+  }
+}
+
+void AddTo(std::vector<TrackRow>& runs, std::vector<TrackRow> rows) {
+  runs.insert(runs.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
+}
+
+std::vector<TrackRow> RunScenes(const TrackOptions& options, std::ostream* events) {
+  std::vector<TrackRow> runs;
+  runtime::Progress progress("lookout-eval", stderr);
+  const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
+  double num_done = 0.0;
+  for (const auto& name : options.plan.scenes) {
+    const auto file = sim::FindScene(name, options.config_folder);
+    const auto scene = SceneLabel(name);
+    for (int k = 0; k < options.plan.num_seeds; ++k) {
+      const auto seed = options.plan.first_seed + static_cast<std::uint64_t>(k);
+      progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", scene, seed); });
+      Truth truth(1);
+      auto rows = ScoreRun(options.config_folder, scene, truth, [&](const DatagramHandler& on_datagram) {
+        SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram);
+      });
+      if (events != nullptr) WriteEvents(rows, seed, truth, *events);
+      AddTo(runs, std::move(rows));
+    }
+  }
+  return runs;
+}
+
+std::vector<TrackRow> RunCaptures(const TrackOptions& options, std::ostream* events) {
+  const auto captures = ListCaptures(options.captures);
+  if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
+  const ConfigOfCaptures config(options.captures, options.config_folder);
+  const auto boat = config::LoadBoat(config.path());
+  std::vector<TrackRow> runs;
+  for (const auto& files : captures) {
+    std::cerr << fmt::format("lookout-eval: {}\n", files.capture.filename().string());
+    Truth truth(kCaptureToleranceUs);
+    auto rows = ScoreRun(config.path(), "second world: " + files.scene, truth,
+                         [&](const DatagramHandler& on_datagram) { ReadRun(files, boat, truth, on_datagram); });
+    if (events != nullptr) WriteEvents(rows, files.seed, truth, *events);
+    AddTo(runs, std::move(rows));
+  }
+  return runs;
+}
+
+// Targets first, then the scenes, and behind those of a world one row over all of them.
+std::vector<NamedTable> AllTablesOf(const std::vector<TrackWorld>& worlds) {
+  std::vector<TrackRow> rows;
+  for (const auto& world : worlds) {
+    AddTo(rows, world.scenes);
+    AddTo(rows, OverAll(world.scenes, world.over_all));
+  }
+  std::vector<NamedTable> tables{TargetTable(worlds, "lookout", "nearest neighbour")};
+  for (auto& table : TablesOf(rows)) tables.push_back(std::move(table));
+  return tables;
+}
+
+std::string ScopeOf(const TrackOptions& options, bool has_captures) {
+  const auto& plan = options.plan;
+  return fmt::format("Own simulator: {} scenes, {} seeds each from {} on, {:.0f} s a seed. The second world: {}.", plan.scenes.size(), plan.num_seeds,
+                     plan.first_seed, plan.seconds, has_captures ? "all of its captures" : "not here");
+}
+
+}  // namespace
+
+MultiObjectTrackers MakeTrackers() {
+  MultiObjectTrackers trackers;
+  trackers.push_back(std::make_unique<NearestNeighbour>());
+  return trackers;
+}
+
+int EvaluateTracks(const TrackOptions& options) {
+  if (!options.plan.scenes.empty()) options.plan.CheckSeeds(options.is_tuning ? SeedUse::kTuning : SeedUse::kTables);
+  if (options.is_tuning && !(options.csv_folder.empty() && options.block_files.empty())) {
+    throw std::invalid_argument("--tuning: no table is written of seeds of tuning: leave out --csv and --blocks");
+  }
+  if (options.plan.scenes.empty() && options.captures.empty()) throw std::invalid_argument("--tracks needs --scenes or --captures");
+  replay::CheckConfig(options.config_folder);
+  io::CatchStopSignals();
+  // Outputs before all work.
+  FillBlocksOf(options.block_files, {});
+  TableFiles files(options.csv_folder, AllTablesOf({}), options.is_forced);
+  std::optional<io::OutputFile> lost;
+  if (!options.lost_file.empty()) {
+    lost.emplace(options.lost_file, io::OutputOptions{.force = options.is_forced});
+    lost->Write("scene,seed,tracker,utime_us,event,thing,num_returns,track_id,east_m,north_m,nearest,gap_m,speed_mps\n");
+  }
+  std::ostream* const events = lost ? &lost->stream() : nullptr;
+  std::vector<TrackWorld> worlds;
+  const auto add_world = [&worlds](const std::string& name, const std::vector<TrackRow>& runs, const std::string& over_all) {
+    if (!runs.empty()) worlds.push_back({name, AddUp(runs), over_all});
+  };
+  add_world("own scenes", RunScenes(options, events), "all scenes");
+  const bool has_captures = !options.captures.empty() && fs::exists(options.captures);
+  if (has_captures) add_world("second world", RunCaptures(options, events), "second world: all");
+  if (!options.captures.empty() && !has_captures) std::cerr << "lookout-eval: " << options.captures.string() << " is not here\n";
+  if (lost) lost->Commit();
+  const auto tables = AllTablesOf(worlds);
+  PrintTables(tables, std::cout);
+  files.Commit(tables);
+  if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(tables, ScopeOf(options, has_captures)));
+  return EXIT_SUCCESS;
+}
+
+}  // namespace lookout::eval

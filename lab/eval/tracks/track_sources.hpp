@@ -1,0 +1,79 @@
+// Where runs to be tracked come from: what the sensors of a boat send, with the truth.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "common/config/boat.hpp"
+#include "lab/eval/methods/captures.hpp"
+#include "lab/eval/truth.hpp"
+#include "tools/replay/stage.hpp"
+
+namespace lookout::eval {
+
+using DatagramHandler = std::function<void(const replay::Datagram&)>;
+
+/// Simulates a scene as lookout-sim does.
+///
+/// @param truth  empty; objects and outlines stand in it before the first datagram, returns before that of their packet
+/// @throws config::ConfigError
+void SimulateRun(const std::filesystem::path& config_folder, const std::filesystem::path& scene_file, std::uint64_t seed, double seconds,
+                 Truth& truth, const DatagramHandler& on_datagram);
+
+/// The same truth without the run: objects and outlines alone.
+void AddSceneTruth(const std::filesystem::path& config_folder, const std::filesystem::path& scene_file, std::uint64_t seed, double seconds,
+                   Truth& truth);
+
+/// The own hull in the vessel frame, as lookout-tracker has it: in the middle of the box of own returns, no larger than it; the whole box where the
+/// size of the hull is not set. Its corners are those of the outline of the own boat in the truth, in their order.
+Polygon OwnHullOf(const config::BoatFacts& boat);
+
+/// Time by which a return of a capture and of its truth may differ.
+inline constexpr std::int64_t kCaptureToleranceUs = 3;
+
+/// The datagrams of a capture, without its truth. @throws std::runtime_error "file: reason"
+void SendCapture(const CaptureWithTruth& files, const DatagramHandler& on_datagram);
+
+/// Reads a capture, and NAME-SEED.objects.csv.xz, .shapes.csv.xz, .ego.csv.xz and .truth.csv.xz beside it.
+///
+/// An object of the shapes has their outline, any other a rectangle of its length and width; between two scans, of whose middle the objects are, it
+/// moves straight. The own boat is its hull at the place and heading of .ego.
+/// @param truth  empty, of tolerance kCaptureToleranceUs; all of it is read before the first datagram
+/// @throws std::runtime_error "file:line: reason"
+void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram);
+
+/// The same without the objects of returns: no .truth.csv.xz need be there.
+void ReadRunOfObjects(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram);
+
+/// Returns of each object in each scan of a capture, as .objects.csv.xz counts them: by the time of the middle of the scan, then by object.
+std::map<std::int64_t, std::map<int, int>> ReadReturnCounts(const CaptureWithTruth& files);
+
+/// A new, empty folder that goes with all that is in it.
+class TempFolder {
+ public:
+  /// @throws std::runtime_error
+  TempFolder();
+  ~TempFolder();
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A config folder with the boat of the captures in place of its own: as long as this lives.
+class ConfigOfCaptures {
+ public:
+  /// Copies config_folder, and boat.txtpb of the captures over it where there is one. @throws std::filesystem::filesystem_error
+  ConfigOfCaptures(const std::filesystem::path& captures, const std::filesystem::path& config_folder);
+  const std::filesystem::path& path() const { return folder_.path(); }
+
+ private:
+  TempFolder folder_;
+};
+
+}  // namespace lookout::eval

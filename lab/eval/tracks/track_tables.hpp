@@ -1,0 +1,25 @@
+// Tables of scores of tracks: one for each family of figures. README.md, "Tracks", defines the columns.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lab/eval/table.hpp"
+#include "lab/eval/tracks/track_run.hpp"
+
+namespace lookout::eval {
+
+/// What a tracker scored on the runs of a scene.
+struct TrackRow {
+  std::string scene;  // with "second world: " before it, or as it is
+  TrackRun::Row row;
+};
+
+/// One row of each scene and tracker: runs of one are added. Order: as they come first.
+std::vector<TrackRow> AddUp(const std::vector<TrackRow>& runs);
+/// The same over all scenes, called `name`; labels are means over the scenes.
+std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::string& name);
+
+std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows);
+
+}  // namespace lookout::eval

@@ -1,0 +1,23 @@
+// What tracks shall reach, and what they reach: README.md, "Tracks".
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lab/eval/tracks/track_tables.hpp"
+
+namespace lookout::eval {
+
+/// Runs of one world, called `name`. Scenes whose name holds "waves", "rough" or "rain" are those, "open_water" is open water with crests, all others
+/// are clear.
+struct TrackWorld {
+  std::string name;
+  std::vector<TrackRow> scenes;  // one row of each scene and tracker (AddUp)
+  std::string over_all;          // what the row over all of them is called
+};
+
+/// A row for each target and world: what `tracker` has, whether that reaches the target, the scene that is farthest from it, and what `other` has.
+/// What no scene of a world shows has no row.
+NamedTable TargetTable(const std::vector<TrackWorld>& worlds, const std::string& tracker, const std::string& other);
+
+}  // namespace lookout::eval
