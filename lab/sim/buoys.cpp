@@ -2,8 +2,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
-#include "lab/sim/model.hpp"
-#include "lab/sim/things.hpp"
+#include "lab/sim/parts.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -39,9 +38,7 @@ void AddFrame(double bottom_m, double top_m, double foot_m, double head_m, Model
   const double radius_m = model.Between(0.02, 0.05);
   const int num_legs = model.Whole(3, 4);
   const auto corner = [&](int leg, double share) {
-    const double angle_rad = kTwoPi * leg / num_legs;
-    const double out_m = foot_m + share * (head_m - foot_m);
-    return Vector3d(out_m * std::cos(angle_rad), out_m * std::sin(angle_rad), bottom_m + share * (top_m - bottom_m));
+    return OnCircle(leg, num_legs, foot_m + share * (head_m - foot_m), bottom_m + share * (top_m - bottom_m));
   };
   for (int leg = 0; leg < num_legs; ++leg) {
     model.Rod(corner(leg, 0.0), corner(leg, 1.0), radius_m, metal);
@@ -52,8 +49,7 @@ void AddFrame(double bottom_m, double top_m, double foot_m, double head_m, Model
 }  // namespace
 
 // Cans, cones, balls, spars, and light buoys with a frame or a pillar on a broad float; 0.4 to 5 m high.
-void MakeNavigationBuoy(const Size& size, Random& random, SceneObject& buoy) {
-  Model model(buoy, random);
+void MakeNavigationBuoy(const Size& size, Model& model) {
   const int form = model.Whole(0, 4);
   const Material paint = model.Paint(size.reflectance);
   const Vector2d middle_m = Vector2d::Zero();
@@ -104,12 +100,10 @@ void MakeNavigationBuoy(const Size& size, Random& random, SceneObject& buoy) {
   if (form != 3 && model.Chance(0.3)) model.Add(Cylinder{middle_m, 0.3 * width_m, 0.85 * top_m, 0.95 * top_m}, model.Retro());
   const double waterline_m = std::max(width_m, 0.3);
   model.Float(waterline_m, waterline_m);
-  model.OutlineAllParts();
 }
 
 // Net floats, pots' floats, mooring balls, bottles and fenders at a line: 0.15 to 0.8 m, barely out of the water; some with a flag on a stick.
-void MakeFloat(const Size& size, Random& random, SceneObject& buoy) {
-  Model model(buoy, random);
+void MakeFloat(const Size& size, Model& model) {
   const double width_m = model.Given(size.width_m, 0.15, 0.8);
   const double top_m = model.Given(size.height_m, 0.5 * width_m, 0.9 * width_m);
   const Material paint = model.Paint(size.reflectance);
@@ -129,12 +123,10 @@ void MakeFloat(const Size& size, Random& random, SceneObject& buoy) {
     }
   }
   model.Float(width_m, width_m);
-  model.OutlineAllParts();
 }
 
 // Inflated marks of a course: cylinders, cones, tetrahedra, balls; 0.8 to 2.2 m.
-void MakeRaceMark(const Size& size, Random& random, SceneObject& buoy) {
-  Model model(buoy, random);
+void MakeRaceMark(const Size& size, Model& model) {
   const double width_m = model.Given(size.width_m, 0.6, 1.6);
   const double top_m = model.Given(size.height_m, 0.8, 2.2);
   const Material cloth = model.Paint(size.reflectance);
@@ -156,23 +148,19 @@ void MakeRaceMark(const Size& size, Random& random, SceneObject& buoy) {
     model.Add(Ellipsoid{{0.0, 0.0, top_m / 2.0}, {width_m / 2.0, width_m / 2.0, top_m / 2.0}}, cloth);
   }
   model.Float(width_m, width_m);
-  model.OutlineAllParts();
 }
 
 // Stakes, perches with twigs, piles in groups, boards on a pile; they stand on the ground and some lean.
-void MakeStake(const Size& size, Random& random, SceneObject& stake) {
-  Model model(stake, random);
+void MakeStake(const Size& size, Model& model) {
   const double top_m = model.Given(size.height_m, 0.5, 4.5);
   const double radius_m = model.Given(size.width_m, 0.05, 0.4) / 2.0;
   const Material wood = model.Paint(size.reflectance);
   const double lean = model.Chance(0.6) ? model.Between(0.0, 0.2) : 0.0;
   const int num_piles = model.Chance(0.2) ? 3 : 1;
   for (int i = 0; i < num_piles; ++i) {
-    const double angle_rad = kTwoPi * i / num_piles;
-    const Vector2d foot_m =
-        num_piles == 1 ? Vector2d(0.0, 0.0) : Vector2d(2.2 * radius_m * std::cos(angle_rad), 2.2 * radius_m * std::sin(angle_rad));
+    const Vector3d foot_m = OnCircle(i, num_piles, num_piles == 1 ? 0.0 : 2.2 * radius_m, -0.5);
     const double share = num_piles == 1 ? 1.0 : 0.5;
-    model.Rod({foot_m.x(), foot_m.y(), -0.5}, {share * foot_m.x() + lean * top_m, share * foot_m.y(), top_m}, radius_m, wood);
+    model.Rod(foot_m, {share * foot_m.x() + lean * top_m, share * foot_m.y(), top_m}, radius_m, wood);
   }
   const Vector3d head_m(lean * top_m, 0.0, top_m);
   const double share = model.Between(0.0, 1.0);
@@ -189,12 +177,10 @@ void MakeStake(const Size& size, Random& random, SceneObject& stake) {
       model.Rod(head_m, head_m + Vector3d(out_m.x(), out_m.y(), model.Between(0.2, 0.8)), 0.012, wood);
     }
   }
-  model.OutlineAllParts();
 }
 
 // A ring of tubes with a handrail on posts and a net over it; some in a group of smaller floats. 4 to 16 m.
-void MakeFishFarm(const Size& size, Random& random, SceneObject& farm) {
-  Model model(farm, random);
+void MakeFishFarm(const Size& size, Model& model) {
   const double width_m = model.Given(size.width_m, 4.0, 16.0);
   const double radius_m = width_m / 2.0;
   const double tube_m = model.Between(0.08, 0.2);
@@ -202,10 +188,7 @@ void MakeFishFarm(const Size& size, Random& random, SceneObject& farm) {
   const Material plastic = model.Paint(size.reflectance > 0.0 ? size.reflectance : 0.04);
   const Material rope = model.Cloth();
   const int num_sides = model.Whole(12, 20);
-  const auto corner = [&](int i, double out_m, double z_m) {
-    const double angle_rad = kTwoPi * i / num_sides;
-    return Vector3d(out_m * std::cos(angle_rad), out_m * std::sin(angle_rad), z_m);
-  };
+  const auto corner = [&](int i, double out_m, double z_m) { return OnCircle(i, num_sides, out_m, z_m); };
   const double outer_m = radius_m - tube_m;
   const double inner_m = outer_m - 3.0 * tube_m;
   const bool is_double = model.Chance(0.6);
@@ -218,12 +201,10 @@ void MakeFishFarm(const Size& size, Random& random, SceneObject& farm) {
   }
   if (model.Chance(0.4)) model.Post(0.0, 0.0, 0.06, -0.2, model.Between(1.0, 3.0), plastic);
   model.Float(width_m, width_m);
-  model.OutlineAllParts();
 }
 
 // Trunks and planks adrift, with a branch or two; most of them under water.
-void MakeLog(const Size& size, Random& random, SceneObject& log) {
-  Model model(log, random);
+void MakeLog(const Size& size, Model& model) {
   const double length_m = model.Given(size.length_m, 0.8, 8.0);
   const double width_m = model.Given(size.width_m, 0.12, 0.6);
   const Material bark{model.Paint(size.reflectance > 0.0 ? size.reflectance : 0.12)};
@@ -239,19 +220,16 @@ void MakeLog(const Size& size, Random& random, SceneObject& log) {
     model.Rod({x_m, 0.0, 0.0}, {x_m + model.Between(0.1, 0.6), y_m, model.Between(0.1, 1.2)}, 0.03, bark);
   }
   model.Float(length_m, width_m);
-  model.OutlineAllParts();
 }
 
 // Ducks to swans: a body, and a head on a neck.
-void MakeWaterBird(const Size& size, Random& random, SceneObject& bird) {
-  Model model(bird, random);
+void MakeWaterBird(const Size& size, Model& model) {
   const double length_m = model.Given(size.length_m, 0.3, 1.3);
   const Material feathers = model.Paint(size.reflectance);
   model.Add(Ellipsoid{{0.0, 0.0, 0.14 * length_m}, {0.5 * length_m, 0.24 * length_m, 0.2 * length_m}}, feathers);
   const double neck_m = length_m * model.Between(0.35, 0.7);
   model.Chain({{0.4 * length_m, 0.0, 0.2 * length_m}, {0.45 * length_m, 0.0, neck_m}, {0.58 * length_m, 0.0, neck_m}}, 0.06 * length_m, feathers);
   model.Float(length_m, 0.5 * length_m);
-  model.OutlineAllParts();
 }
 
 }  // namespace lookout::sim

@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/sim/model.hpp"
-#include "lab/sim/things.hpp"
+#include "lab/sim/parts.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -41,7 +40,7 @@ void AddCrew(double min_x_m, double max_x_m, double half_y_m, double floor_m, in
     const Vector2d facing = model.Chance(0.7) ? Vector2d(1.0, 0.0) : Vector2d(0.0, model.Chance(0.5) ? 1.0 : -1.0);
     const bool stands = model.Chance(0.3);
     model.Person({model.Between(min_x_m, max_x_m), model.Between(-half_y_m, half_y_m), floor_m + (stands ? 0.0 : 0.35)}, facing,
-                 stands ? Model::Posture::kStanding : Model::Posture::kSitting);
+                 Model::PostureOf(stands));
   }
 }
 
@@ -65,15 +64,9 @@ void AddHouse(double aft_m, double front_m, double half_y_m, double bottom_m, do
   const double band_from_m = bottom_m + height_m * model.Between(0.35, 0.6);
   const double band_to_m = bottom_m + height_m * model.Between(0.8, 0.92);
   const double side_lean = std::min(model.Between(0.0, 0.2), 0.3 * half_y_m / height_m);
-  // Edges of Rectangle: starboard, front, port, aft.
   const auto layer = [&](double from_m, double to_m, const Material& material) {
     const double in_m = side_lean * (from_m - bottom_m);
-    LeaningWalls walls;
-    walls.footprint_m = Rectangle(aft_m, front_m - rake * (from_m - bottom_m), -half_y_m + in_m, half_y_m - in_m);
-    walls.lean = {side_lean, rake, side_lean, 0.0};
-    walls.bottom_m = from_m;
-    walls.top_m = to_m;
-    model.Add(ToConvex(walls), material);
+    AddCabin({aft_m, front_m - rake * (from_m - bottom_m), half_y_m - in_m}, {side_lean, rake, side_lean, 0.0}, from_m, to_m, material, model);
   };
   layer(bottom_m, band_from_m, paint);
   layer(band_from_m, band_to_m, model.Glass());
@@ -88,15 +81,9 @@ struct Hull {
 
 // Flared, higher at the bow; open on top or decked.
 Hull AddHull(const HullPlan& plan, double rail_m, bool is_open, const Material& paint, Model& model) {
-  LeaningWalls hull;
-  hull.footprint_m = OutlineOf(plan);
-  hull.lean = {model.Between(0.05, 0.5)};
-  hull.is_widest_on_top = true;
-  hull.bottom_m = -0.15 - 0.03 * plan.length_m;  // long hulls bridge troughs
-  hull.top_m = rail_m;
-  hull.top_slope = model.Between(0.0, 0.09);
-  // What leans in must not meet in the middle above the bottom.
-  hull.lean[0] = std::min(hull.lean[0], 0.3 * plan.width_m / (rail_m + 0.15 + 0.08 * plan.length_m));
+  // What leans in must not meet in the middle above the bottom. Long hulls bridge troughs.
+  const double lean = std::min(model.Between(0.05, 0.5), 0.3 * plan.width_m / (rail_m + 0.15 + 0.08 * plan.length_m));
+  LeaningWalls hull = HullWalls(plan, lean, -0.15 - 0.03 * plan.length_m, rail_m, model.Between(0.0, 0.09));
   const double floor_m = is_open ? std::min(model.Between(0.05, 0.25), rail_m - 0.1) : rail_m;
   if (is_open) {
     hull.wall_m = std::min(model.Between(0.04, 0.12), 0.15 * plan.width_m);
@@ -157,18 +144,15 @@ void AddPulpit(const HullPlan& plan, double deck_m, double bow_rise_m, Model& mo
 }  // namespace
 
 // Rowing boats, flat-bottomed boats with a square bow, tenders, inflatables, runabouts with a console.
-void MakeOpenBoat(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
-  const double length_m = model.Given(size.length_m, 2.2, 6.5);
-  const double width_m = model.Given(size.width_m, 0.9 + 0.12 * length_m, 1.2 + 0.17 * length_m);
-  model.Float(length_m, width_m);
+void MakeOpenBoat(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {2.2, 6.5}, {0.9, 0.12}, {1.2, 0.17}, model);
+  const double length_m = plan.length_m;
+  const double width_m = plan.width_m;
   if (model.Chance(0.3)) {
     MakeInflatable(length_m, width_m, size.reflectance, model);
-    model.OutlineAllParts();
     return;
   }
   const bool has_square_bow = model.Chance(0.2);
-  HullPlan plan{length_m, width_m};
   plan.bow_power = model.Between(1.5, 3.0);
   plan.bow_share = has_square_bow ? model.Between(0.5, 0.85) : model.Between(0.02, 0.2);
   plan.transom_share = model.Chance(0.1) ? 0.1 : model.Between(0.55, 1.0);
@@ -186,14 +170,9 @@ void MakeOpenBoat(const Size& size, Random& random, SceneObject& boat) {
     const double console_m = model.Between(-0.15, 0.1) * length_m;
     const double half_m = model.Chance(0.5) ? 0.35 : half_y_m;  // in the middle, or a windscreen right across
     const double top_m = hull.rail_m + model.Between(0.1, 0.6);
-    LeaningWalls screen;
-    screen.footprint_m = Rectangle(console_m, console_m + 0.4, -half_m, half_m);
-    screen.lean = {0.1, model.Between(0.2, 0.9), 0.1, 0.0};
-    screen.lean[1] = std::min(screen.lean[1], 0.3 / 0.45);
-    screen.bottom_m = top_m;
-    screen.top_m = top_m + model.Between(0.25, 0.45);
+    const double rake = std::min(model.Between(0.2, 0.9), 0.3 / 0.45);
     model.Box(console_m, console_m + 0.4, -half_m, half_m, hull.floor_m, top_m, model.Paint());
-    model.Add(ToConvex(screen), model.Glass());
+    AddCabin({console_m, console_m + 0.4, half_m}, {0.1, rake, 0.1, 0.0}, top_m, top_m + model.Between(0.25, 0.45), model.Glass(), model);
     if (model.Chance(0.3)) AddBimini(console_m - 1.2, console_m + 0.6, half_y_m, hull.rail_m, model);
   } else if (model.Chance(0.3)) {
     for (const double side : {-1.0, 1.0}) {  // oars, out to the sides or laid in
@@ -205,16 +184,13 @@ void MakeOpenBoat(const Size& size, Random& random, SceneObject& boat) {
   if (model.Chance(0.55)) AddOutboard(-length_m / 2.0, 0.0, hull.rail_m, model);
   if (model.Chance(0.15)) AddFenders(length_m, width_m / 2.0, hull.rail_m, model);
   AddCrew(-0.35 * length_m, 0.2 * length_m, 0.25 * width_m, hull.floor_m, length_m > 3.0 ? 4 : 2, model);
-  model.OutlineAllParts();
 }
 
 // From a day boat with a small cabin to a motor yacht with a flybridge.
-void MakeCruiser(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
-  const double length_m = model.Given(size.length_m, 5.5, 16.0);
-  const double width_m = model.Given(size.width_m, 1.3 + 0.2 * length_m, 1.5 + 0.25 * length_m);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
+void MakeCruiser(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {5.5, 16.0}, {1.3, 0.2}, {1.5, 0.25}, model);
+  const double length_m = plan.length_m;
+  const double width_m = plan.width_m;
   plan.bow_power = model.Between(1.5, 2.8);
   plan.bow_share = model.Between(0.0, 0.15);
   plan.transom_share = model.Between(0.75, 1.0);
@@ -236,12 +212,7 @@ void MakeCruiser(const Size& size, Random& random, SceneObject& boat) {
     }
   }
   if (model.Chance(0.6)) {
-    LeaningWalls foredeck;
-    foredeck.footprint_m = Rectangle(house_front_m - 0.2, 0.38 * length_m, -0.6 * half_y_m, 0.6 * half_y_m);
-    foredeck.lean = {0.3, 1.0, 0.3, 0.0};
-    foredeck.bottom_m = rail_m;
-    foredeck.top_m = rail_m + model.Between(0.15, 0.4);
-    model.Add(ToConvex(foredeck), paint);
+    AddCabin({house_front_m - 0.2, 0.38 * length_m, 0.6 * half_y_m}, {0.3, 1.0, 0.3, 0.0}, rail_m, rail_m + model.Between(0.15, 0.4), paint, model);
   }
   if (length_m > 9.0 && model.Chance(0.45)) {  // flybridge
     const double front_m = house_front_m - rake * house_m - 0.2;
@@ -268,16 +239,13 @@ void MakeCruiser(const Size& size, Random& random, SceneObject& boat) {
   }
   if (model.Chance(0.4)) AddFenders(length_m, width_m / 2.0, rail_m, model);
   AddCrew(-0.42 * length_m, house_aft_m - 0.3, 0.25 * width_m, rail_m - 0.2, 3, model);
-  model.OutlineAllParts();
 }
 
 // Fishing boats and launches with a wheelhouse, high bow and gear; flat landing boats.
-void MakeWorkboat(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
-  const double length_m = model.Given(size.length_m, 6.0, 20.0);
-  const double width_m = model.Given(size.width_m, 1.5 + 0.19 * length_m, 1.9 + 0.24 * length_m);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
+void MakeWorkboat(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {6.0, 20.0}, {1.5, 0.19}, {1.9, 0.24}, model);
+  const double length_m = plan.length_m;
+  const double width_m = plan.width_m;
   plan.bow_power = model.Between(2.0, 4.0);
   plan.bow_share = model.Chance(0.25) ? model.Between(0.6, 0.95) : model.Between(0.05, 0.25);
   plan.transom_share = model.Between(0.6, 1.0);
@@ -311,28 +279,19 @@ void MakeWorkboat(const Size& size, Random& random, SceneObject& boat) {
   }
   if (model.Chance(0.6)) AddFenders(length_m, width_m / 2.0, rail_m, model);
   AddCrew(-0.35 * length_m, 0.3 * length_m, 0.25 * width_m, deck_m, 3, model);
-  model.OutlineAllParts();
 }
 
 // A long low hull with blunt ends, deckhouse aft, hatches or cargo.
-void MakeBarge(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
-  const double length_m = model.Given(size.length_m, 12.0, 40.0);
-  const double width_m = model.Given(size.width_m, 2.1 + 0.04 * length_m, 3.0 + 0.07 * length_m);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
+void MakeBarge(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {12.0, 40.0}, {2.1, 0.04}, {3.0, 0.07}, model);
+  const double length_m = plan.length_m;
+  const double width_m = plan.width_m;
   plan.bow_power = model.Between(4.0, 9.0);
   plan.bow_share = model.Between(0.3, 0.95);
   plan.transom_share = model.Between(0.8, 1.0);
   plan.middle_share = model.Between(0.6, 0.9);
   const double rail_m = model.Between(0.4, 1.8);
-  LeaningWalls hull;
-  hull.footprint_m = OutlineOf(plan);
-  hull.lean = {model.Between(0.0, 0.15)};
-  hull.is_widest_on_top = true;
-  hull.bottom_m = -0.8;
-  hull.top_m = rail_m;
-  model.Add(ToConvex(hull), model.Paint(size.reflectance));
+  model.Add(ToConvex(HullWalls(plan, model.Between(0.0, 0.15), -0.8, rail_m)), model.Paint(size.reflectance));
   const double house_m = std::clamp(length_m * model.Between(0.1, 0.3), 2.0, 9.0);
   const double house_aft_m = length_m * model.Between(-0.48, -0.4);
   const double rake = model.Between(0.0, 0.2);
@@ -352,7 +311,6 @@ void MakeBarge(const Size& size, Random& random, SceneObject& boat) {
   if (model.Chance(0.5)) model.Post(0.44 * length_m, 0.0, 0.06, rail_m, rail_m + model.Between(1.0, 5.0), model.Metal());
   if (model.Chance(0.5)) AddFenders(0.9 * length_m, width_m / 2.0, rail_m, model);
   AddCrew(hold_from_m, hold_to_m, 0.3 * width_m, rail_m, 2, model);
-  model.OutlineAllParts();
 }
 
 }  // namespace lookout::sim

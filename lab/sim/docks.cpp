@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/sim/model.hpp"
 #include "lab/sim/things.hpp"
 
 namespace lookout::sim {
@@ -202,19 +201,12 @@ void AddPlacard(double x_m, double y_m, double foot_m, Model& model) {
 
 }  // namespace
 
-void MakeJetty(const Size& size, Random& random, SceneObject& dock) {
-  Model model(dock, random);
-  MakeRun(size, false, model);
-}
+void MakeJetty(const Size& size, Model& model) { MakeRun(size, false, model); }
 
-void MakePontoon(const Size& size, Random& random, SceneObject& dock) {
-  Model model(dock, random);
-  MakeRun(size, true, model);
-}
+void MakePontoon(const Size& size, Model& model) { MakeRun(size, true, model); }
 
 // Two or three bays side by side, open to the sea: a back along y at the landward side, walls from it outward, a placard at the back of each bay.
-void MakeDockBays(const Size& size, Random& random, SceneObject& dock) {
-  Model model(dock, random);
+void MakeDockBays(const Size& size, Model& model) {
   const bool is_floating = model.Chance(0.7);
   Build build = DrawBuild(is_floating, model);
   build.rail_probability = model.Chance(0.2) ? 0.4 : 0.0;
@@ -231,7 +223,7 @@ void MakeDockBays(const Size& size, Random& random, SceneObject& dock) {
   const Deck back{0.0, back_m, -width_m / 2.0, width_m / 2.0};
   AddDeck(back, build, model);
   AddFurniture(back, build, model.Chance(0.4) ? 1.0 : 0.0, model);
-  auto& outline_m = dock.outline_m;
+  auto& outline_m = model.object().outline_m;
   outline_m.emplace_back(0.0, width_m / 2.0);
   outline_m.emplace_back(0.0, -width_m / 2.0);
   for (int i = 0; i <= num_bays; ++i) {

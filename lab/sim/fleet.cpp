@@ -140,32 +140,11 @@ void MakeWall(const Size& size, SceneObject& wall) {
   wall.parts = {{Prism{wall.outline_m, -1.0, size.height_m}, Material{size.reflectance}}};
 }
 
-void DrawOneOf(std::span<const std::string_view> names, Random& random, SceneObject& object) {
-  const auto chosen = static_cast<std::size_t>(random.Uniform() * static_cast<double>(names.size()));
-  const auto kind = std::ranges::find(Kinds(), names[chosen], &KindOfObject::name);
-  object.kind = kind->name;
-  object.is_in_water = kind->is_in_water;
-  kind->draw({}, random, object);
-}
-
-// Those of many forms come more often.
-void MakeAnyCraft(const Size& /*size*/, Random& random, SceneObject& boat) {
-  static constexpr std::array<std::string_view, 20> kNames{"open_boat",      "open_boat",      "open_boat",    "cruiser",      "cruiser",
-                                                           "sailing_dinghy", "sailing_dinghy", "yacht",        "yacht",        "twin_hull",
-                                                           "twin_hull",      "canoe",          "canoe",        "paddle_board", "pedal_boat",
-                                                           "raft",           "workboat",       "rowing_shell", "jet_ski",      "robot_boat"};
-  DrawOneOf(kNames, random, boat);
-}
-
-void MakeAnyBuoy(const Size& /*size*/, Random& random, SceneObject& buoy) {
-  static constexpr std::array<std::string_view, 6> kNames{"navigation_buoy", "navigation_buoy", "float", "float", "race_mark", "stake"};
-  DrawOneOf(kNames, random, buoy);
-}
-
-void MakeAnyDock(const Size& /*size*/, Random& random, SceneObject& dock) {
-  static constexpr std::array<std::string_view, 3> kNames{"jetty", "pontoon", "dock_bays"};
-  DrawOneOf(kNames, random, dock);
-}
+constexpr std::array<std::string_view, 20> kAnyCraft{
+    "open_boat", "open_boat", "open_boat", "cruiser",      "cruiser",    "sailing_dinghy", "sailing_dinghy", "yacht",        "yacht",   "twin_hull",
+    "twin_hull", "canoe",     "canoe",     "paddle_board", "pedal_boat", "raft",           "workboat",       "rowing_shell", "jet_ski", "robot_boat"};
+constexpr std::array<std::string_view, 6> kAnyBuoy{"navigation_buoy", "navigation_buoy", "float", "float", "race_mark", "stake"};
+constexpr std::array<std::string_view, 3> kAnyDock{"jetty", "pontoon", "dock_bays"};
 
 constexpr std::array<KindOfObject, 40> kKinds{{
     {"motor_boat", {6.0, 2.2, 0.0, kGelcoat}, true, true, MakeMotorBoat},
@@ -205,9 +184,9 @@ constexpr std::array<KindOfObject, 40> kKinds{{
     {"jet_ski", {3.6, 1.25, 0.0, kBrightest}, true, true, nullptr, MakeJetSki},
     {"windsurfer", {3.6, 1.0, 0.0, kBrightest}, true, true, nullptr, MakeWindsurfer},
     {"robot_boat", {4.0, 2.4, 0.0, kBrightest}, true, true, nullptr, MakeRobotBoat},
-    {"any_craft", {}, true, true, nullptr, MakeAnyCraft},
-    {"any_buoy", {}, true, true, nullptr, MakeAnyBuoy},
-    {"any_dock", {}, false, false, nullptr, MakeAnyDock},
+    {"any_craft", {}, true, true, nullptr, nullptr, kAnyCraft},
+    {"any_buoy", {}, true, true, nullptr, nullptr, kAnyBuoy},
+    {"any_dock", {}, false, false, nullptr, nullptr, kAnyDock},
 }};
 
 }  // namespace
@@ -215,10 +194,16 @@ constexpr std::array<KindOfObject, 40> kKinds{{
 std::span<const KindOfObject> Kinds() { return kKinds; }
 
 SceneObject MakeObject(const KindOfObject& kind, const Size& size, Random& random) {
+  if (!kind.one_of.empty()) {
+    const auto chosen = static_cast<std::size_t>(random.Uniform() * static_cast<double>(kind.one_of.size()));
+    return MakeObject(*std::ranges::find(Kinds(), kind.one_of[chosen], &KindOfObject::name), {}, random);
+  }
   SceneObject object{0, "", std::string(kind.name), Track{}, {}, {}};
   object.is_in_water = kind.is_in_water;
   if (kind.draw != nullptr) {
-    kind.draw(size, random, object);
+    Model model(object, random);
+    kind.draw(size, model);
+    if (object.outline_m.empty()) model.OutlineAllParts();
     return object;
   }
   kind.make(size, object);

@@ -11,6 +11,8 @@
 
 namespace lookout::sim {
 
+class Model;
+
 /// Of an object. 0 where its kind has no such size.
 struct Size {
   double length_m = 0.0;  // along x
@@ -25,10 +27,15 @@ struct KindOfObject {
   Size usual;             // 0 = the kind has no such size; of a drawn one the greatest that is drawn
   bool is_in_water;       // a boat, swimmer, buoy or marker
   bool is_afloat;         // rides the waves
-  /// Makes parts and outline. Null where `draw` is not.
+  // One of these three.
+  /// Makes parts and outline.
   void (*make)(const Size& size, SceneObject& object);
-  /// Draws parts, outline and waterline, and every size that is 0. One that stands for several kinds sets the object's kind.
-  void (*draw)(const Size& size, Random& random, SceneObject& object) = nullptr;
+  /// Draws parts and waterline, and every size that is 0. What it leaves without an outline has one round all parts.
+  void (*draw)(const Size& size, Model& model) = nullptr;
+  /// Names of the kinds of which the seed draws one. Those of many forms come more often.
+  std::span<const std::string_view> one_of = {};
+
+  bool is_drawn() const { return make == nullptr; }
 };
 
 /// All kinds but shores and islands.

@@ -61,6 +61,7 @@ class Model {
                const Material& material);
 
   enum class Posture { kStanding, kSitting, kKneeling };
+  static Posture PostureOf(bool stands) { return stands ? Posture::kStanding : Posture::kSitting; }
   /// @param feet_m   what it stands or sits on
   /// @param facing   unit vector seen from above
   void Person(const Eigen::Vector3d& feet_m, const Eigen::Vector2d& facing, Posture posture);

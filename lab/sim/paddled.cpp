@@ -2,8 +2,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
-#include "lab/sim/model.hpp"
-#include "lab/sim/things.hpp"
+#include "lab/sim/parts.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -24,8 +23,7 @@ void AddPaddle(const Vector3d& hands_m, double length_m, Model& model) {
 }  // namespace
 
 // Kayaks, closed around their paddlers, and canoes, open and with higher ends: one to three people, rarely none.
-void MakeCanoe(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
+void MakeCanoe(const Size& size, Model& model) {
   const double length_m = model.Given(size.length_m, 2.6, 6.5);
   const bool is_open = model.Chance(0.4);
   const double width_m = model.Given(size.width_m, is_open ? 0.7 : 0.48, is_open ? 1.0 : 0.85);
@@ -36,12 +34,7 @@ void MakeCanoe(const Size& size, Random& random, SceneObject& boat) {
   plan.transom_share = plan.bow_share + 0.02;
   plan.middle_share = 0.5;
   const double rail_m = is_open ? model.Between(0.25, 0.4) : model.Between(0.12, 0.3);
-  LeaningWalls hull;
-  hull.footprint_m = OutlineOf(plan);
-  hull.lean = {std::min(0.25, 0.2 * width_m / (rail_m + 0.2))};
-  hull.is_widest_on_top = true;
-  hull.bottom_m = -0.1;
-  hull.top_m = rail_m;
+  LeaningWalls hull = HullWalls(plan, std::min(0.25, 0.2 * width_m / (rail_m + 0.2)), -0.1, rail_m);
   if (is_open) {
     hull.wall_m = 0.03;
     hull.hollow_bottom_m = 0.02;
@@ -63,16 +56,11 @@ void MakeCanoe(const Size& size, Random& random, SceneObject& boat) {
     if (model.Chance(0.85)) AddPaddle({x_m + 0.4, 0.0, seat_m + model.Between(0.35, 0.55)}, is_open ? 1.5 : 2.2, model);
   }
   if (model.Chance(0.2)) model.Add(Ellipsoid{{-0.3 * length_m, 0.0, rail_m}, {0.3, 0.2, 0.2}}, model.Paint());  // a bag
-  model.OutlineAllParts();
 }
 
 // A board a hand's breadth over the water and who stands, kneels or sits on it.
-void MakePaddleBoard(const Size& size, Random& random, SceneObject& board) {
-  Model model(board, random);
-  const double length_m = model.Given(size.length_m, 2.6, 4.2);
-  const double width_m = model.Given(size.width_m, 0.6, 0.9);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
+void MakePaddleBoard(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {2.6, 4.2}, {0.6}, {0.9}, model);
   plan.bow_power = 2.5;
   plan.transom_share = 0.5;
   const double top_m = model.Between(0.05, 0.14);
@@ -87,12 +75,10 @@ void MakePaddleBoard(const Size& size, Random& random, SceneObject& board) {
     AddPaddle({0.4, 0.0, top_m + 0.6}, 1.9, model);
   }
   if (model.Chance(0.15)) model.Person({0.7, 0.0, top_m}, {1.0, 0.0}, Model::Posture::kSitting);
-  model.OutlineAllParts();
 }
 
 // Two floats, seats on a deck between them, some with a slide or the shape of an animal.
-void MakePedalBoat(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
+void MakePedalBoat(const Size& size, Model& model) {
   const double length_m = model.Given(size.length_m, 2.2, 4.2);
   const double width_m = model.Given(size.width_m, 1.4, 2.0);
   model.Float(length_m, width_m);
@@ -127,12 +113,10 @@ void MakePedalBoat(const Size& size, Random& random, SceneObject& boat) {
         {{0.3 * length_m, 0.0, float_m}, {0.42 * length_m, 0.0, 0.7 * head_m}, {0.36 * length_m, 0.0, head_m}, {0.48 * length_m, 0.0, head_m}}, 0.13,
         paint);
   }
-  model.OutlineAllParts();
 }
 
 // Logs or barrels under a deck, bathing islands with a ladder, inflatable ones; people, a tent, a flag.
-void MakeRaft(const Size& size, Random& random, SceneObject& raft) {
-  Model model(raft, random);
+void MakeRaft(const Size& size, Model& model) {
   const double length_m = model.Given(size.length_m, 1.8, 6.0);
   const double width_m = model.Given(size.width_m, 0.5 * length_m, 0.95 * length_m);
   model.Float(length_m, width_m);
@@ -167,27 +151,21 @@ void MakeRaft(const Size& size, Random& random, SceneObject& raft) {
                 rubber);
     model.Box(-x_m, x_m, -y_m, y_m, 0.02, 0.1, rubber);
     if (model.Chance(0.4)) {  // a life raft's tent
-      LeaningWalls tent;
-      tent.footprint_m = Rectangle(-x_m, x_m, -y_m, y_m);
-      tent.lean = {0.45 * width_m / 1.5};
-      tent.bottom_m = 2.0 * radius_m;
-      tent.top_m = 2.0 * radius_m + model.Between(0.7, 1.1);
-      model.Add(ToConvex(tent), model.Chance(0.3) ? model.Retro() : model.Cloth());
+      const double lean = 0.45 * width_m / 1.5;
+      const double top_m = 2.0 * radius_m + model.Between(0.7, 1.1);
+      AddCabin({-x_m, x_m, y_m}, {lean, lean, lean, lean}, 2.0 * radius_m, top_m, model.Chance(0.3) ? model.Retro() : model.Cloth(), model);
     }
   }
   const int count = model.Whole(0, 3);
   for (int i = 0; i < count; ++i) {
     const bool stands = model.Chance(0.35);
-    model.Person({model.Between(-0.35, 0.35) * length_m, model.Between(-0.3, 0.3) * width_m, deck_m}, {0.0, 1.0},
-                 stands ? Model::Posture::kStanding : Model::Posture::kSitting);
+    model.Person({model.Between(-0.35, 0.35) * length_m, model.Between(-0.3, 0.3) * width_m, deck_m}, {0.0, 1.0}, Model::PostureOf(stands));
   }
   if (model.Chance(0.2)) model.Post(-0.4 * length_m, 0.0, 0.025, deck_m, deck_m + model.Between(1.0, 2.5), model.Wood());
-  model.OutlineAllParts();
 }
 
 // A head, shoulders or arms, a swim buoy in tow; wet skin is dark.
-void MakeBather(const Size& size, Random& random, SceneObject& bather) {
-  Model model(bather, random);
+void MakeBather(const Size& size, Model& model) {
   const double head_m = model.Given(size.width_m, 0.17, 0.26) / 2.0;
   const Material skin{model.Between(0.05, 0.4)};
   const Material cap = model.Chance(0.4) ? model.Paint() : skin;
@@ -205,7 +183,6 @@ void MakeBather(const Size& size, Random& random, SceneObject& bather) {
     const double behind_m = model.Between(0.9, 1.6);
     model.Rod({-behind_m - 0.35, 0.0, 0.06}, {-behind_m, 0.0, 0.06}, model.Between(0.1, 0.16), model.Paint(size.reflectance));
   }
-  model.OutlineAllParts();
 }
 
 }  // namespace lookout::sim

@@ -2,8 +2,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
-#include "lab/sim/model.hpp"
-#include "lab/sim/things.hpp"
+#include "lab/sim/parts.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -90,14 +89,8 @@ void AddSlimHull(double y_m, double length_m, double width_m, double top_m, cons
   plan.bow_power = 1.7;
   plan.bow_share = 0.05;
   plan.transom_share = 0.5;
-  LeaningWalls hull;
-  hull.footprint_m = OutlineOf(plan);
+  LeaningWalls hull = HullWalls(plan, std::min(0.2, 0.2 * width_m / (top_m + 0.2 + 0.03 * length_m)), -0.15 - 0.02 * length_m, top_m, 0.02);
   for (auto& p_m : hull.footprint_m) p_m.y() += y_m;
-  hull.lean = {std::min(0.2, 0.2 * width_m / (top_m + 0.2 + 0.03 * length_m))};
-  hull.is_widest_on_top = true;
-  hull.bottom_m = -0.15 - 0.02 * length_m;
-  hull.top_m = top_m;
-  hull.top_slope = 0.02;
   model.Add(ToConvex(hull), paint);
 }
 
@@ -165,7 +158,7 @@ void MakePontoonBoat(double length_m, double beam_m, double reflectance, Model& 
     const bool stands = model.Chance(0.3);
     const double facing = model.Chance(0.5) ? 1.0 : -1.0;
     model.Person({model.Between(-0.8, 0.8) * end_m, model.Between(-0.35, 0.35) * beam_m, deck_m + (stands ? 0.1 : 0.45)}, {0.0, facing},
-                 stands ? Model::Posture::kStanding : Model::Posture::kSitting);
+                 Model::PostureOf(stands));
   }
 }
 
@@ -199,40 +192,30 @@ void MakeCruisingCatamaran(double length_m, double beam_m, double reflectance, M
   const double front_m = model.Between(0.1, 0.2) * length_m;
   const double clear_m = model.Between(0.4, 0.7) * hull_m;  // free height under the deck
   model.Box(aft_m, front_m, -y_m, y_m, clear_m, hull_m, paint);
-  LeaningWalls house;
-  house.footprint_m = Rectangle(aft_m + 0.2 * length_m, front_m, -0.8 * y_m, 0.8 * y_m);
-  house.lean = {0.2, model.Between(0.4, 1.2), 0.2, 0.0};
-  house.bottom_m = hull_m;
-  house.top_m = hull_m + model.Between(0.8, 1.3);
-  model.Add(ToConvex(house), model.Chance(0.5) ? model.Glass() : paint);
+  const double rake = model.Between(0.4, 1.2);
+  const double roof_m = hull_m + model.Between(0.8, 1.3);
+  AddCabin({aft_m + 0.2 * length_m, front_m, 0.8 * y_m}, {0.2, rake, 0.2, 0.0}, hull_m, roof_m, model.Chance(0.5) ? model.Glass() : paint, model);
   if (model.Chance(0.8)) model.Rod({0.45 * length_m, -y_m, hull_m}, {0.45 * length_m, y_m, hull_m}, 0.08, model.Metal());
   for (const double side : {-1.0, 1.0}) {
     model.Railing({aft_m, side * (y_m + 0.3 * width_m), hull_m}, {0.4 * length_m, side * (y_m + 0.3 * width_m), hull_m}, 0.65, 2.0, 2, 0.012,
                   model.Metal());
   }
-  AddRig({{front_m - 0.3, 0.0}, house.top_m, length_m * model.Between(1.2, 1.5), 0.4 * length_m, 0.45 * length_m}, 0.3, model);
+  AddRig({{front_m - 0.3, 0.0}, roof_m, length_m * model.Between(1.2, 1.5), 0.4 * length_m, 0.45 * length_m}, 0.3, model);
 }
 
 }  // namespace
 
 // From a child's boat to a skiff; open, one or two people, who often sit out at the side.
-void MakeSailingDinghy(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
-  const double length_m = model.Given(size.length_m, 2.3, 6.0);
-  const double width_m = model.Given(size.width_m, 0.7 + 0.15 * length_m, 0.9 + 0.22 * length_m);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
+void MakeSailingDinghy(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {2.3, 6.0}, {0.7, 0.15}, {0.9, 0.22}, model);
+  const double length_m = plan.length_m;
+  const double width_m = plan.width_m;
   plan.bow_power = model.Between(1.4, 2.4);
   plan.bow_share = model.Chance(0.2) ? 0.5 : model.Between(0.0, 0.1);
   plan.transom_share = model.Between(0.6, 0.95);
-  LeaningWalls hull;
   const double rail_m = model.Between(0.3, 0.55);
-  hull.footprint_m = OutlineOf(plan);
-  hull.lean = {std::min(model.Between(0.2, 0.8), 0.3 * width_m / (rail_m + 0.3))};
-  hull.is_widest_on_top = true;
-  hull.bottom_m = -0.1;
-  hull.top_m = rail_m;
-  hull.top_slope = model.Between(0.0, 0.06);
+  const double lean = std::min(model.Between(0.2, 0.8), 0.3 * width_m / (rail_m + 0.3));
+  LeaningWalls hull = HullWalls(plan, lean, -0.1, rail_m, model.Between(0.0, 0.06));
   hull.wall_m = model.Between(0.05, 0.3) * width_m;  // side decks
   hull.hollow_bottom_m = 0.1;
   model.Add(ToConvex(hull), model.Paint(size.reflectance));
@@ -245,45 +228,30 @@ void MakeSailingDinghy(const Size& size, Random& random, SceneObject& boat) {
     model.Person({length_m * (-0.3 + 0.18 * i), y_m, rail_m}, {0.0, -side}, Model::Posture::kSitting);
   }
   if (model.Chance(0.8)) model.Box(-length_m / 2.0 - 0.08, -length_m / 2.0, -0.15, 0.15, -0.2, rail_m, model.Wood());  // rudder
-  model.OutlineAllParts();
 }
 
 // With cabin, keel, stays and rails; sails down in most, as at moorings.
-void MakeYacht(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
-  const double length_m = model.Given(size.length_m, 5.5, 16.0);
-  const double width_m = model.Given(size.width_m, 1.0 + 0.18 * length_m, 1.3 + 0.24 * length_m);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
+void MakeYacht(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {5.5, 16.0}, {1.0, 0.18}, {1.3, 0.24}, model);
+  const double length_m = plan.length_m;
+  const double width_m = plan.width_m;
   plan.bow_power = model.Between(1.4, 2.2);
   plan.bow_share = model.Between(0.0, 0.08);
   plan.transom_share = model.Chance(0.15) ? 0.05 : model.Between(0.4, 0.9);
   const double rail_m = 0.45 + length_m * model.Between(0.04, 0.07);
-  LeaningWalls hull;
-  hull.footprint_m = OutlineOf(plan);
-  hull.lean = {model.Between(0.05, 0.35)};
-  hull.is_widest_on_top = true;
-  hull.bottom_m = -0.2 - 0.03 * length_m;
-  hull.top_m = rail_m;
-  hull.top_slope = model.Between(0.01, 0.05);
+  const double lean = model.Between(0.05, 0.35);
   const Material paint = model.Paint(size.reflectance);
-  model.Add(ToConvex(hull), paint);
+  model.Add(ToConvex(HullWalls(plan, lean, -0.2 - 0.03 * length_m, rail_m, model.Between(0.01, 0.05))), paint);
   const double mast_x_m = length_m * model.Between(0.02, 0.16);
   const double cabin_m = model.Between(0.25, 0.6);
-  LeaningWalls cabin;
   const double cabin_aft_m = length_m * model.Between(-0.2, -0.08);
-  cabin.footprint_m = Rectangle(cabin_aft_m, length_m * model.Between(0.18, 0.3), -0.28 * width_m, 0.28 * width_m);
-  cabin.lean = {0.3, model.Between(0.5, 2.0), 0.3, 0.1};
-  cabin.bottom_m = rail_m;
-  cabin.top_m = rail_m + cabin_m;
-  model.Add(ToConvex(cabin), model.Chance(0.3) ? model.Paint() : paint);
+  const double cabin_front_m = length_m * model.Between(0.18, 0.3);
+  const double rake = model.Between(0.5, 2.0);
+  AddCabin({cabin_aft_m, cabin_front_m, 0.28 * width_m}, {0.3, rake, 0.3, 0.1}, rail_m, rail_m + cabin_m, model.Chance(0.3) ? model.Paint() : paint,
+           model);
   if (model.Chance(0.5)) {  // spray hood
-    LeaningWalls hood;
-    hood.footprint_m = Rectangle(cabin_aft_m - 0.7, cabin_aft_m + 0.7, -0.26 * width_m, 0.26 * width_m);
-    hood.lean = {0.2, 1.0, 0.2, 0.0};
-    hood.bottom_m = rail_m + 0.5 * cabin_m;
-    hood.top_m = rail_m + cabin_m + model.Between(0.35, 0.55);
-    model.Add(ToConvex(hood), model.Cloth());
+    AddCabin({cabin_aft_m - 0.7, cabin_aft_m + 0.7, 0.26 * width_m}, {0.2, 1.0, 0.2, 0.0}, rail_m + 0.5 * cabin_m,
+             rail_m + cabin_m + model.Between(0.35, 0.55), model.Cloth(), model);
   }
   if (model.Chance(0.8)) {  // rails on both sides, pulpit and pushpit
     const Material metal = model.Metal();
@@ -304,11 +272,9 @@ void MakeYacht(const Size& size, Random& random, SceneObject& boat) {
     const double side = model.Chance(0.5) ? 1.0 : -1.0;
     model.Person({length_m * model.Between(-0.4, -0.22), side * 0.25 * width_m, rail_m + 0.1}, {0.0, -side}, Model::Posture::kSitting);
   }
-  model.OutlineAllParts();
 }
 
-void MakeTwinHull(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
+void MakeTwinHull(const Size& size, Model& model) {
   const int form = model.Whole(0, 3);
   double length_m = 0.0;
   double beam_m = 0.0;
@@ -330,7 +296,6 @@ void MakeTwinHull(const Size& size, Random& random, SceneObject& boat) {
     draw(8.0, 15.0, 0.45, 0.6);
     MakeCruisingCatamaran(length_m, beam_m, size.reflectance, model);
   }
-  model.OutlineAllParts();
 }
 
 }  // namespace lookout::sim

@@ -243,7 +243,7 @@ class Drawing {
     }
     const KindOfObject* kind = FindKind(file.kind());
     if (kind != nullptr) {
-      const Size usual = kind->draw == nullptr ? kind->usual : Size{};
+      const Size usual = kind->is_drawn() ? Size{} : kind->usual;
       Size size;
       size.length_m = Draw(file.length_m(), usual.length_m, random);
       size.width_m = Draw(file.width_m(), usual.width_m, random);

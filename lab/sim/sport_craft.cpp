@@ -2,23 +2,19 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
-#include "lab/sim/model.hpp"
-#include "lab/sim/things.hpp"
+#include "lab/sim/parts.hpp"
 
 namespace lookout::sim {
 
 using Eigen::Vector3d;
 
 // Long and slim, one to nine people one behind the other, oars out to both sides or in turn.
-void MakeRowingShell(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
+void MakeRowingShell(const Size& size, Model& model) {
   int num_rowers = model.Whole(1, 4);
   if (model.Chance(0.3)) num_rowers *= 2;
-  const double length_m = model.Given(size.length_m, 5.0 + 1.4 * num_rowers, 6.5 + 1.5 * num_rowers);
+  HullPlan plan = DrawPlan(size, {5.0 + 1.4 * num_rowers, 6.5 + 1.5 * num_rowers}, {0.3}, {0.65}, model);
+  const double length_m = plan.length_m;
   num_rowers = std::min(num_rowers, std::max(1, static_cast<int>((length_m - 2.0) / 1.4)));  // of a given length
-  const double width_m = model.Given(size.width_m, 0.3, 0.65);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
   plan.bow_power = 1.6;
   plan.bow_share = 0.03;
   plan.transom_share = 0.05;
@@ -41,16 +37,13 @@ void MakeRowingShell(const Size& size, Random& random, SceneObject& boat) {
     }
   }
   if (num_rowers > 3 && model.Chance(0.6)) model.Person({-0.42 * length_m, 0.0, rail_m - 0.1}, {1.0, 0.0}, Model::Posture::kSitting);
-  model.OutlineAllParts();
 }
 
 // A house on a flat hull: a porch at one end, a roof that stands out, some with a rail and things on it.
-void MakeHouseboat(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
-  const double length_m = model.Given(size.length_m, 6.0, 18.0);
-  const double width_m = model.Given(size.width_m, 2.2, 4.8);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
+void MakeHouseboat(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {6.0, 18.0}, {2.2}, {4.8}, model);
+  const double length_m = plan.length_m;
+  const double width_m = plan.width_m;
   plan.bow_power = model.Between(3.0, 8.0);
   plan.bow_share = model.Between(0.3, 0.95);
   plan.transom_share = 0.95;
@@ -88,52 +81,31 @@ void MakeHouseboat(const Size& size, Random& random, SceneObject& boat) {
     model.Post(x_m, y_m, model.Between(0.08, 0.35), foot_m, foot_m + 0.7, model.Paint());
   }
   if (model.Chance(0.4)) model.Person({0.42 * length_m, 0.0, deck_m}, {1.0, 0.0}, Model::Posture::kStanding);
-  model.OutlineAllParts();
 }
 
 // Short, decked, ridden astride.
-void MakeJetSki(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
-  const double length_m = model.Given(size.length_m, 2.2, 3.6);
-  const double width_m = model.Given(size.width_m, 0.75, 1.25);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
+void MakeJetSki(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {2.2, 3.6}, {0.75}, {1.25}, model);
+  const double length_m = plan.length_m;
   plan.bow_power = 1.8;
   const Material paint = model.Paint(size.reflectance);
   const double rail_m = model.Between(0.3, 0.45);
-  LeaningWalls hull;
-  hull.footprint_m = OutlineOf(plan);
-  hull.lean = {0.2};
-  hull.is_widest_on_top = true;
-  hull.bottom_m = -0.2;
-  hull.top_m = rail_m;
-  hull.top_slope = 0.06;
-  model.Add(ToConvex(hull), paint);
+  model.Add(ToConvex(HullWalls(plan, 0.2, -0.2, rail_m, 0.06)), paint);
   const double seat_m = rail_m + model.Between(0.25, 0.4);
   model.Box(-0.4 * length_m, 0.1 * length_m, -0.17, 0.17, rail_m, seat_m, model.Paint());
-  LeaningWalls cowl;
-  cowl.footprint_m = Rectangle(0.05 * length_m, 0.35 * length_m, -0.28, 0.28);
-  cowl.lean = {0.3, 0.8, 0.3, 0.0};
-  cowl.bottom_m = rail_m;
-  cowl.top_m = rail_m + 0.5;
-  model.Add(ToConvex(cowl), paint);
+  AddCabin({0.05 * length_m, 0.35 * length_m, 0.28}, {0.3, 0.8, 0.3, 0.0}, rail_m, rail_m + 0.5, paint, model);
   model.Rod({0.08 * length_m, -0.35, rail_m + 0.6}, {0.08 * length_m, 0.35, rail_m + 0.6}, 0.025, model.Metal());
   const int num_riders = model.Whole(0, 2);
   for (int i = 0; i < num_riders; ++i) {
     const bool stands = model.Chance(0.2);
-    model.Person({(-0.08 - 0.2 * i) * length_m, 0.0, stands ? rail_m : seat_m - 0.1}, {1.0, 0.0},
-                 stands ? Model::Posture::kStanding : Model::Posture::kSitting);
+    model.Person({(-0.08 - 0.2 * i) * length_m, 0.0, stands ? rail_m : seat_m - 0.1}, {1.0, 0.0}, Model::PostureOf(stands));
   }
-  model.OutlineAllParts();
 }
 
 // A board, a sail that stands up from its middle, and who holds it; or sail and rider in the water.
-void MakeWindsurfer(const Size& size, Random& random, SceneObject& board) {
-  Model model(board, random);
-  const double length_m = model.Given(size.length_m, 2.2, 3.6);
-  const double width_m = model.Given(size.width_m, 0.55, 1.0);
-  model.Float(length_m, width_m);
-  HullPlan plan{length_m, width_m};
+void MakeWindsurfer(const Size& size, Model& model) {
+  HullPlan plan = DrawPlan(size, {2.2, 3.6}, {0.55}, {1.0}, model);
+  const double length_m = plan.length_m;
   plan.bow_power = 2.2;
   plan.transom_share = 0.6;
   model.Add(Prism{OutlineOf(plan), -0.05, model.Between(0.05, 0.12)}, model.Paint(size.reflectance));
@@ -158,12 +130,10 @@ void MakeWindsurfer(const Size& size, Random& random, SceneObject& board) {
   } else {
     model.Person({-0.1 * length_m, -side * 0.2, 0.1}, {1.0, 0.0}, Model::Posture::kStanding);
   }
-  model.OutlineAllParts();
 }
 
 // Boats without crew, as universities build them: a short hull, one or with outriggers, a box, a mast with sensors.
-void MakeRobotBoat(const Size& size, Random& random, SceneObject& boat) {
-  Model model(boat, random);
+void MakeRobotBoat(const Size& size, Model& model) {
   const double length_m = model.Given(size.length_m, 0.9, 4.0);
   const double width_m = model.Given(size.width_m, 0.3 * length_m, 0.6 * length_m);
   const bool has_outriggers = model.Chance(0.3);
@@ -174,13 +144,7 @@ void MakeRobotBoat(const Size& size, Random& random, SceneObject& boat) {
   plan.bow_share = model.Between(0.0, 0.4);
   const double deck_m = model.Between(0.08, 0.14) * length_m;
   const Material paint = model.Paint(size.reflectance);
-  LeaningWalls hull;
-  hull.footprint_m = OutlineOf(plan);
-  hull.lean = {0.1};
-  hull.is_widest_on_top = true;
-  hull.bottom_m = -0.15;
-  hull.top_m = deck_m;
-  model.Add(ToConvex(hull), paint);
+  model.Add(ToConvex(HullWalls(plan, 0.1, -0.15, deck_m)), paint);
   if (has_outriggers) {
     for (const double side : {-1.0, 1.0}) {
       const double y_m = side * (0.5 * width_m - 0.05 * length_m);
@@ -198,7 +162,6 @@ void MakeRobotBoat(const Size& size, Random& random, SceneObject& boat) {
     model.Post(x_m, 0.0, 0.02, deck_m, top_m, model.Metal());
     if (model.Chance(0.6)) model.Post(x_m, 0.0, model.Between(0.05, 0.12), top_m, top_m + 0.12, model.Paint());
   }
-  model.OutlineAllParts();
 }
 
 }  // namespace lookout::sim

@@ -22,7 +22,7 @@ SceneObject Drawn(const KindOfObject& kind, std::uint64_t seed, const Size& size
 std::vector<KindOfObject> DrawnKinds() {
   std::vector<KindOfObject> kinds;
   for (const auto& kind : Kinds()) {
-    if (kind.draw != nullptr) kinds.push_back(kind);
+    if (kind.is_drawn()) kinds.push_back(kind);
   }
   return kinds;
 }
