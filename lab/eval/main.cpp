@@ -153,18 +153,9 @@ Options ParseOptions(int argc, char** argv) {
   return options;
 }
 
-int EvaluateTracks(const eval::ComparisonOptions& options) {
+eval::RunOptions RunsOf(const eval::ComparisonOptions& options) {
   const auto use = options.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
-  return eval::EvaluateTracks({options.config_folder, eval::PlanOf(options, use), options.is_tuning, options.captures, options.csv_folder,
-                               options.lost_file, options.is_forced, options.block_files});
-}
-
-int EvaluateAlerts(const Options& options) {
-  const auto& comparison = options.comparison;
-  const auto use = comparison.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
-  return eval::EvaluateAlerts({comparison.config_folder, eval::PlanOf(comparison, use), options.berth_seconds.value_or(comparison.seconds),
-                               comparison.is_tuning, options.captures, options.num_jobs, options.kept_folder, comparison.csv_folder,
-                               options.list_file, comparison.is_forced, comparison.block_files});
+  return {options.config_folder, eval::PlanOf(options, use), options.is_tuning, options.csv_folder, options.is_forced, options.block_files};
 }
 
 }  // namespace
@@ -175,8 +166,13 @@ int main(int argc, char** argv) try {
   if (!options.autoferry_folder.empty()) {
     return eval::EvaluateAutoferry({options.autoferry_folder, options.comparison.config_folder, options.comparison.block_files});
   }
-  if (options.has_alerts) return EvaluateAlerts(options);
-  return options.has_tracks ? EvaluateTracks(options.comparison) : eval::CompareMethods(options.comparison);
+  const auto& comparison = options.comparison;
+  if (options.has_alerts) {
+    return eval::EvaluateAlerts({RunsOf(comparison), options.berth_seconds.value_or(comparison.seconds), options.captures, options.num_jobs,
+                                 options.kept_folder, options.list_file});
+  }
+  if (options.has_tracks) return eval::EvaluateTracks({RunsOf(comparison), comparison.captures, comparison.lost_file});
+  return eval::CompareMethods(comparison);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;

@@ -10,6 +10,9 @@
 namespace lookout::eval {
 namespace {
 
+// As lookout-export has it: the nearest microsecond.
+std::int64_t ToMicroseconds(std::int64_t time_ns) { return static_cast<std::int64_t>(std::floor((static_cast<double>(time_ns) + 500.0) / 1000.0)); }
+
 std::tuple<std::int64_t, int, int> OrderOf(const Truth::Return& made) { return {made.utime_us, made.ring, made.return_index}; }
 
 }  // namespace
@@ -155,6 +158,20 @@ Outlines Truth::OutlinesIn(const GeographicLib::LocalCartesian& map) const {
     }
   }
   return result;
+}
+
+void Truth::ForEachReturn(const lidar_scan_t& part,
+                          const std::function<void(std::size_t cell, std::int64_t time_ns, const Return* truth)>& handle) const {
+  std::size_t cell = 0;
+  for (std::size_t column = 0; column < static_cast<std::size_t>(part.num_columns); ++column) {
+    for (std::size_t ring = 0; ring < static_cast<std::size_t>(part.num_rings); ++ring) {
+      for (int k = 0; k < part.num_returns; ++k, ++cell) {
+        if (part.range[cell] == 0) continue;
+        const std::int64_t time_ns = std::int64_t{part.time_ns[column]} + part.time_offset_ns[ring];
+        handle(cell, time_ns, Find(part.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k));
+      }
+    }
+  }
 }
 
 }  // namespace lookout::eval

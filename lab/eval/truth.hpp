@@ -3,14 +3,18 @@
 
 #include <Eigen/Core>
 #include <GeographicLib/LocalCartesian.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "lookout/lidar_scan_t.hpp"
 
 namespace lookout::eval {
 
@@ -109,6 +113,10 @@ class Truth {
   std::optional<TruthSpan> Span() const;
 
   Outlines OutlinesIn(const GeographicLib::LocalCartesian& map) const;
+
+  /// Calls handle(cell, time_ns, truth) for each return of a part of LIDAR_SCAN, in the order of its cells. time_ns: since utime_us of the part;
+  /// truth: nullptr where it is not in the truth.
+  void ForEachReturn(const lidar_scan_t& part, const std::function<void(std::size_t cell, std::int64_t time_ns, const Return* truth)>& handle) const;
 
  private:
   std::map<int, TruthObject> objects_;

@@ -60,17 +60,12 @@ Table OperatingPoints(const Results& results) {
   AddOutcomeHeadings(header);
   AddLandHeadings(header);
   Table table(header);
-  for (const auto& method : results.methods) {
-    for (const auto& scene : results.scenes) {
-      const auto found = method.by_scene.find(scene);
-      if (found == method.by_scene.end()) continue;
-      const auto& score = found->second;
-      Table::Row row{method.method, scene, Number(score.false_segments.value(), 3), FinePercent(score.with_segment.value())};
-      AddOutcomeCells(row, AllKinds(score));
-      AddLandCells(row, score);
-      table.Add(std::move(row));
-    }
-  }
+  ForEachScore(results, [&](const std::string& method, const std::string& scene, const Score& score) {
+    Table::Row row{method, scene, Number(score.false_segments.value(), 3), FinePercent(score.with_segment.value())};
+    AddOutcomeCells(row, AllKinds(score));
+    AddLandCells(row, score);
+    table.Add(std::move(row));
+  });
   return table;
 }
 
@@ -78,17 +73,13 @@ Table LossesByKind(const Results& results) {
   Table::Row header{"method", "scene", "kind"};
   AddOutcomeHeadings(header);
   Table table(header);
-  for (const auto& method : results.methods) {
-    for (const auto& scene : results.scenes) {
-      const auto found = method.by_scene.find(scene);
-      if (found == method.by_scene.end()) continue;
-      for (const auto& [kind, outcomes] : found->second.outcomes_by_kind) {
-        Table::Row row{method.method, scene, kind};
-        AddOutcomeCells(row, outcomes);
-        table.Add(std::move(row));
-      }
+  ForEachScore(results, [&](const std::string& method, const std::string& scene, const Score& score) {
+    for (const auto& [kind, outcomes] : score.outcomes_by_kind) {
+      Table::Row row{method, scene, kind};
+      AddOutcomeCells(row, outcomes);
+      table.Add(std::move(row));
     }
-  }
+  });
   return table;
 }
 
@@ -100,12 +91,11 @@ void AddCurve(Table& table, const std::string& method, const std::string& scene,
 
 Table ConfidenceCurve(const Results& results, bool is_by_scene) {
   Table table({"method", "scene", "threshold", "with_segment_%", "false"});
-  for (const auto& method : results.methods) {
-    if (!is_by_scene) AddCurve(table, method.method, "all", Total(method).confidence);
-    for (const auto& scene : results.scenes) {
-      const auto found = method.by_scene.find(scene);
-      if (is_by_scene && found != method.by_scene.end()) AddCurve(table, method.method, scene, found->second.confidence);
-    }
+  if (is_by_scene) {
+    ForEachScore(results,
+                 [&](const std::string& method, const std::string& scene, const Score& score) { AddCurve(table, method, scene, score.confidence); });
+  } else {
+    for (const auto& method : results.methods) AddCurve(table, method.method, "all", Total(method).confidence);
   }
   return table;
 }

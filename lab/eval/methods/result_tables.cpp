@@ -127,15 +127,11 @@ Table AgainstPeers(const Results& results) {
 // A row for each method, scene and kind.
 Table NearRecall(const Results& results) {
   Table table({"method", "scene", "kind", "object_scans", "recall_%"});
-  for (const auto& method : results.methods) {
-    for (const auto& scene : results.scenes) {
-      const auto found = method.by_scene.find(scene);
-      if (found == method.by_scene.end()) continue;
-      for (const auto& [kind, recall] : found->second.near_recall_by_kind) {
-        table.Add({method.method, scene, kind, Number(recall.count), Percent(recall.value())});
-      }
+  ForEachScore(results, [&](const std::string& method, const std::string& scene, const Score& score) {
+    for (const auto& [kind, recall] : score.near_recall_by_kind) {
+      table.Add({method, scene, kind, Number(recall.count), Percent(recall.value())});
     }
-  }
+  });
   return table;
 }
 

@@ -135,4 +135,14 @@ struct Results {
   std::vector<Results> other_worlds;
 };
 
+/// Calls handle(method, scene, score) for each method and each scene in which it is known, in the order of the tables.
+template <typename Handler>
+void ForEachScore(const Results& results, Handler handle) {
+  for (const auto& method : results.methods) {
+    for (const auto& scene : results.scenes) {
+      if (const auto found = method.by_scene.find(scene); found != method.by_scene.end()) handle(method.method, scene, found->second);
+    }
+  }
+}
+
 }  // namespace lookout::eval

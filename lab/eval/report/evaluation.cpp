@@ -19,9 +19,6 @@ const segment_t* FindSegment(const messages::ScanMessages& scan, int id) {
   return nullptr;
 }
 
-// As lookout-export has it: the nearest microsecond.
-std::int64_t ToMicroseconds(std::int64_t time_ns) { return static_cast<std::int64_t>(std::floor((static_cast<double>(time_ns) + 500.0) / 1000.0)); }
-
 }  // namespace
 
 void Errors::Add(const Errors& other) {
@@ -65,20 +62,12 @@ std::vector<Evaluation::JoinedReturn> Evaluation::Join(const messages::ScanMessa
   for (const auto& [part_index, part] : scan.scans) {
     const auto found = scan.segments.find(part_index);
     if (found == scan.segments.end() || found->second.num_cells != part.num_cells) continue;
-    std::size_t cell = 0;
-    for (std::size_t column = 0; column < static_cast<std::size_t>(part.num_columns); ++column) {
-      for (std::size_t ring = 0; ring < static_cast<std::size_t>(part.num_rings); ++ring) {
-        for (int k = 0; k < part.num_returns; ++k, ++cell) {
-          if (part.range[cell] == 0) continue;
-          ++num_returns;
-          const std::int64_t time_ns = std::int64_t{part.time_ns[column]} + part.time_offset_ns[ring];
-          const auto* truth = truth_->Find(part.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k);
-          if (truth == nullptr) continue;
-          ++num_joined;
-          returns.push_back({found->second.label[cell], time_ns, truth->object_id, truth->p_lidar_m});
-        }
-      }
-    }
+    truth_->ForEachReturn(part, [&](std::size_t cell, std::int64_t time_ns, const Truth::Return* truth) {
+      ++num_returns;
+      if (truth == nullptr) return;
+      ++num_joined;
+      returns.push_back({found->second.label[cell], time_ns, truth->object_id, truth->p_lidar_m});
+    });
   }
   std::ranges::stable_sort(returns, {}, [](const JoinedReturn& made) { return std::pair(made.label, made.time_ns); });
   return returns;

@@ -163,14 +163,9 @@ AlertScores JudgeCapture(const fs::path& config_folder, const std::string& scene
 
 std::vector<AlertJob> SceneJobs(const AlertOptions& options) {
   std::vector<AlertJob> jobs;
-  for (const auto& name : options.plan.scenes) {
-    const auto file = sim::FindScene(name, options.config_folder);
-    const auto scene = SceneLabel(name);
-    for (int k = 0; k < options.plan.num_seeds; ++k) {
-      const auto seed = options.plan.first_seed + static_cast<std::uint64_t>(k);
-      jobs.push_back({scene, seed, [=, &options] { return JudgeScene(options, file, scene, seed); }});
-    }
-  }
+  ForEachRun(options, [&](const fs::path& file, const std::string& scene, std::uint64_t seed) {
+    jobs.push_back({scene, seed, [=, &options] { return JudgeScene(options, file, scene, seed); }});
+  });
   return jobs;
 }
 
@@ -232,16 +227,9 @@ std::string ScopeOf(const AlertOptions& options, bool has_captures) {
 }  // namespace
 
 int EvaluateAlerts(const AlertOptions& options) {
-  if (!options.plan.scenes.empty()) options.plan.CheckSeeds(options.is_tuning ? SeedUse::kTuning : SeedUse::kTables);
-  if (options.is_tuning && !(options.csv_folder.empty() && options.block_files.empty())) {
-    throw std::invalid_argument("--tuning: no table is written of seeds of tuning: leave out --csv and --blocks");
-  }
-  if (options.plan.scenes.empty() && options.captures.empty()) throw std::invalid_argument("--alerts needs --scenes or --captures");
-  replay::CheckConfig(options.config_folder);
-  io::CatchStopSignals();
+  BeginRuns(options, !options.captures.empty(), "--alerts");
   if (!options.kept_folder.empty()) fs::create_directories(options.kept_folder);
   // Outputs before all work.
-  FillBlocksOf(options.block_files, {});
   TableFiles files(options.csv_folder, AlertTablesOf({}), options.is_forced);
   std::optional<io::OutputFile> list;
   if (!options.list_file.empty()) {

@@ -5,22 +5,17 @@
 #include <filesystem>
 #include <vector>
 
-#include "lab/eval/methods/run_plan.hpp"
+#include "lab/eval/tracks/run_options.hpp"
 
 namespace lookout::eval {
 
-struct AlertOptions {
-  std::filesystem::path config_folder;
-  RunPlan plan;                                    // scenes may be none; a run is no longer than its scene says that it lasts
-  double berth_seconds = 60.0;                     // of each seed, where the own boat lies in its berth
-  bool is_tuning = false;                          // seeds of tuning
-  std::vector<std::filesystem::path> captures;     // folders; one that does not exist is said, and left out
-  std::size_t num_jobs = 1;                        // runs at once
-  std::filesystem::path kept_folder;               // what the tracker reads is kept there, and used again (KeptRun); empty = none
-  std::filesystem::path csv_folder;                // empty = none
-  std::filesystem::path list_file;                 // each alert and danger, a row of CSV; empty = none
-  bool is_forced = false;                          // files that are there are replaced
-  std::vector<std::filesystem::path> block_files;  // in whose marked blocks the tables are written (FillBlocks)
+/// A run is no longer than its scene says that it lasts.
+struct AlertOptions : RunOptions {
+  double berth_seconds = 60.0;                  // of each seed, where the own boat lies in its berth
+  std::vector<std::filesystem::path> captures;  // folders; one that does not exist is said, and left out
+  std::size_t num_jobs = 1;                     // runs at once
+  std::filesystem::path kept_folder;            // what the tracker reads is kept there, and used again (KeptRun); empty = none
+  std::filesystem::path list_file;              // each alert and danger, a row of CSV; empty = none
 };
 
 /// Runs all services on each scene and seed, and on each capture, and prints the tables to stdout, progress to stderr. @return exit code

@@ -1,14 +1,13 @@
 #include "lab/eval/tracks/alert_tables.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 #include "common/core/angles.hpp"
+#include "lab/eval/tracks/targets.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -76,25 +75,11 @@ NamedTable LeftOutTable(const std::vector<AlertRow>& rows) {
   return {"alerts_left_out", "alerts: what is left out, since the truth does not know it", std::move(table)};
 }
 
-enum class AlertWeather { kClear, kRough };
-
-AlertWeather WeatherOfScene(const std::string& scene) {
-  const auto is = [&scene](std::string_view word) { return scene.find(word) != std::string::npos; };
-  return is("waves") || is("rough") || is("rain") ? AlertWeather::kRough : AlertWeather::kClear;
-}
-
-struct AlertTarget {
-  std::string what;
-  double most = 0.0;
-  int decimals = 0;
-  bool (*is_of)(const std::string& scene) = nullptr;
-  std::function<double(const AlertScores&)> figure;  // NaN: not shown
-};
-
-std::vector<AlertTarget> AlertTargets() {
+std::vector<Target<AlertScores>> AlertTargets() {
+  using Side = Target<AlertScores>::Side;
   const auto any = [](const std::string& /*scene*/) { return true; };
-  const auto clear = [](const std::string& scene) { return WeatherOfScene(scene) == AlertWeather::kClear; };
-  const auto rough = [](const std::string& scene) { return WeatherOfScene(scene) == AlertWeather::kRough; };
+  const auto rough = [](const std::string& scene) { return WeatherOf(scene) == Weather::kWaves || WeatherOf(scene) == Weather::kRain; };
+  const auto clear = [rough](const std::string& scene) { return !rough(scene); };
   const auto dense = [](const std::string& scene) { return scene.find("dense") != std::string::npos && scene.find("moored") == std::string::npos; };
   const auto marina = [](const std::string& scene) { return scene.find("marina") != std::string::npos; };
   const auto false_in_berth = [](const AlertScores& scores) {
@@ -106,17 +91,18 @@ std::vector<AlertTarget> AlertTargets() {
   };
   const auto standing = [](const AlertScores& scores) { return scores.standing.value(); };
   return {
-      {"false alerts an hour, moored", 0.0, 1, any, false_in_berth},
-      {"false alerts an hour, under way, clear", 1.0, 1, clear, false_under_way},
-      {"false alerts an hour, under way, waves and rain", 6.0, 1, rough, false_under_way},
-      {"repeated, % of all alerts", 0.0, 1, any,
+      {"false alerts an hour, moored", Side::kAtMost, 0.0, 1, any, false_in_berth},
+      {"false alerts an hour, under way, clear", Side::kAtMost, 1.0, 1, clear, false_under_way},
+      {"false alerts an hour, under way, waves and rain", Side::kAtMost, 6.0, 1, rough, false_under_way},
+      {"repeated, % of all alerts", Side::kAtMost, 0.0, 1, any,
        [](const AlertScores& scores) { return 100.0 * ShareOf(scores.Num(AlertVerdict::kRepeated), scores.NumAlerts()); }},
-      {"dangers missed, %", 0.0, 1, any,
+      {"dangers missed, %", Side::kAtMost, 0.0, 1, any,
        [](const AlertScores& scores) { return 100.0 * ShareOf(scores.Num(DangerVerdict::kMissed), scores.NumDangers()); }},
-      {"from when a danger can be known to its alert, median, s", 0.5, 1, any, [](const AlertScores& scores) { return DelayOf(scores, 50); }},
-      {"the same, 95 %, s", 2.0, 1, any, [](const AlertScores& scores) { return DelayOf(scores, 95); }},
-      {"alerts standing at once in dense, mean", 2.0, 1, dense, standing},
-      {"alerts standing at once in marina, mean", 1.0, 1, marina, standing},
+      {"from when a danger can be known to its alert, median, s", Side::kAtMost, 0.5, 1, any,
+       [](const AlertScores& scores) { return DelayOf(scores, 50); }},
+      {"the same, 95 %, s", Side::kAtMost, 2.0, 1, any, [](const AlertScores& scores) { return DelayOf(scores, 95); }},
+      {"alerts standing at once in dense, mean", Side::kAtMost, 2.0, 1, dense, standing},
+      {"alerts standing at once in marina, mean", Side::kAtMost, 1.0, 1, marina, standing},
   };
 }
 
@@ -130,19 +116,14 @@ NamedTable TargetsOf(const std::vector<AlertWorld>& worlds) {
   Table table({"world", "what", "target", "lookout", "reached", "worst scene", "hours"});
   for (const auto& world : worlds) {
     for (const auto& target : AlertTargets()) {
-      std::vector<AlertRow> scenes;
-      std::ranges::copy_if(world.scenes, std::back_inserter(scenes), [&](const AlertRow& row) { return target.is_of(row.scene); });
-      const auto sum = SumOf(scenes);
-      const double reached = target.figure(sum);
-      if (scenes.empty() || std::isnan(reached)) continue;
-      const auto worst = std::ranges::max_element(scenes, {}, [&](const AlertRow& row) {
-        const double figure = target.figure(row.scores);
-        return std::isnan(figure) ? -1.0 : figure;
-      });
-      table.Add({world.name, target.what, "<= " + Number(target.most, target.decimals), NumberOrNever(reached, target.decimals),
-                 reached <= target.most ? "yes" : "MISSED",
-                 fmt::format("{} {}", NumberOrNever(target.figure(worst->scores), target.decimals), worst->scene),
-                 Number(sum.seconds / kSecondsOfHour, 2)});
+      const auto reached = ReachedBy(target, world.scenes, &AlertRow::scores, SumOf);
+      if (std::isnan(reached.all)) continue;
+      double seconds = 0.0;
+      for (const auto& row : world.scenes) seconds += target.is_of(row.scene) ? row.scores.seconds : 0.0;
+      Table::Row cells{world.name};
+      std::ranges::move(TargetCells(target, reached), std::back_inserter(cells));
+      cells.push_back(Number(seconds / kSecondsOfHour, 2));
+      table.Add(std::move(cells));
     }
   }
   return {"alerts_targets", "alerts: targets (all runs together)", std::move(table)};

@@ -22,7 +22,6 @@
 #include "lab/eval/tracks/track_sources.hpp"
 #include "lab/eval/tracks/track_tables.hpp"
 #include "lab/eval/tracks/track_targets.hpp"
-#include "lab/sim/scene_file.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout::eval {
@@ -87,20 +86,15 @@ std::vector<TrackRow> RunScenes(const TrackOptions& options, std::ostream* event
   runtime::Progress progress("lookout-eval", stderr);
   const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
   double num_done = 0.0;
-  for (const auto& name : options.plan.scenes) {
-    const auto file = sim::FindScene(name, options.config_folder);
-    const auto scene = SceneLabel(name);
-    for (int k = 0; k < options.plan.num_seeds; ++k) {
-      const auto seed = options.plan.first_seed + static_cast<std::uint64_t>(k);
-      progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", scene, seed); });
-      Truth truth(1);
-      auto rows = ScoreRun(options.config_folder, scene, truth, [&](const DatagramHandler& on_datagram) {
-        SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram);
-      });
-      if (events != nullptr) WriteEvents(rows, seed, truth, *events);
-      AddTo(runs, std::move(rows));
-    }
-  }
+  ForEachRun(options, [&](const fs::path& file, const std::string& scene, std::uint64_t seed) {
+    progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", scene, seed); });
+    Truth truth(1);
+    auto rows = ScoreRun(options.config_folder, scene, truth, [&](const DatagramHandler& on_datagram) {
+      SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram);
+    });
+    if (events != nullptr) WriteEvents(rows, seed, truth, *events);
+    AddTo(runs, std::move(rows));
+  });
   return runs;
 }
 
@@ -148,15 +142,8 @@ MultiObjectTrackers MakeTrackers() {
 }
 
 int EvaluateTracks(const TrackOptions& options) {
-  if (!options.plan.scenes.empty()) options.plan.CheckSeeds(options.is_tuning ? SeedUse::kTuning : SeedUse::kTables);
-  if (options.is_tuning && !(options.csv_folder.empty() && options.block_files.empty())) {
-    throw std::invalid_argument("--tuning: no table is written of seeds of tuning: leave out --csv and --blocks");
-  }
-  if (options.plan.scenes.empty() && options.captures.empty()) throw std::invalid_argument("--tracks needs --scenes or --captures");
-  replay::CheckConfig(options.config_folder);
-  io::CatchStopSignals();
+  BeginRuns(options, !options.captures.empty(), "--tracks");
   // Outputs before all work.
-  FillBlocksOf(options.block_files, {});
   TableFiles files(options.csv_folder, AllTablesOf({}), options.is_forced);
   std::optional<io::OutputFile> lost;
   if (!options.lost_file.empty()) {

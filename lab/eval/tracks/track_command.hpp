@@ -7,20 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "lab/eval/methods/run_plan.hpp"
 #include "lab/eval/tracks/multi_object_tracker.hpp"
+#include "lab/eval/tracks/run_options.hpp"
 
 namespace lookout::eval {
 
-struct TrackOptions {
-  std::filesystem::path config_folder;
-  RunPlan plan;                                    // scenes may be none
-  bool is_tuning = false;                          // seeds of tuning
-  std::filesystem::path captures;                  // empty = none
-  std::filesystem::path csv_folder;                // empty = none
-  std::filesystem::path lost_file;                 // what costs MOTA, a row of CSV for each scan and thing or track; empty = none
-  bool is_forced = false;                          // files that are there are replaced
-  std::vector<std::filesystem::path> block_files;  // in whose marked blocks the tables are written (FillBlocks)
+struct TrackOptions : RunOptions {
+  std::filesystem::path captures;   // empty = none
+  std::filesystem::path lost_file;  // what costs MOTA, a row of CSV for each scan and thing or track; empty = none
 };
 
 /// What stands beside the boat's own tracker in each table. A further tracker is a further line here.

@@ -17,9 +17,6 @@ constexpr std::size_t kMaxWaiting = 256;
 // Returns stand in the truth in the order of time, and scans come in theirs.
 constexpr std::int64_t kKeptUs = 2'000'000;
 
-// As lookout-export has it: the nearest microsecond.
-std::int64_t ToMicroseconds(std::int64_t time_ns) { return static_cast<std::int64_t>(std::floor((static_cast<double>(time_ns) + 500.0) / 1000.0)); }
-
 std::set<int> LandOf(const messages::ScanMessages& scan) {
   std::set<int> land;
   for (const auto& [part_index, message] : scan.segments) {
@@ -99,22 +96,13 @@ std::vector<TrackRun::LabelledReturn> TrackRun::Join(const messages::ScanMessage
     const auto found = scan.segments.find(part_index);
     const bool is_labelled = found != scan.segments.end() && found->second.num_cells == part.num_cells;
     const auto piece = is_labelled ? messages::PiecesOf(found->second) : std::vector<std::int16_t>(part.range.size(), 0);
-    std::size_t cell = 0;
-    for (std::size_t column = 0; column < static_cast<std::size_t>(part.num_columns); ++column) {
-      for (std::size_t ring = 0; ring < static_cast<std::size_t>(part.num_rings); ++ring) {
-        for (int k = 0; k < part.num_returns; ++k, ++cell) {
-          if (part.range[cell] == 0) continue;
-          ++num_returns_;
-          const std::int64_t time_ns = std::int64_t{part.time_ns[column]} + part.time_offset_ns[ring];
-          const auto* truth = truth_.Find(part.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k);
-          if (truth == nullptr) continue;
-          ++num_joined_;
-          if (truth->object_id != data::kOwnVesselObject) {
-            returns.push_back({truth->object_id, is_labelled ? found->second.label[cell] : 0, piece[cell]});
-          }
-        }
-      }
-    }
+    truth_.ForEachReturn(part, [&](std::size_t cell, std::int64_t /*time_ns*/, const Truth::Return* truth) {
+      ++num_returns_;
+      if (truth == nullptr) return;
+      ++num_joined_;
+      if (truth->object_id == data::kOwnVesselObject) return;
+      returns.push_back({truth->object_id, is_labelled ? found->second.label[cell] : 0, piece[cell]});
+    });
   }
   if (used_returns_ == Returns::kForgotten) truth_.ForgetReturnsBefore(scan.utime_us - kKeptUs);
   return returns;

@@ -1,71 +1,38 @@
 #include "lab/eval/tracks/track_targets.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <string_view>
+#include <utility>
+
+#include "lab/eval/tracks/targets.hpp"
 
 namespace lookout::eval {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-enum class Weather { kClear, kOpenWater, kWaves, kRain };
-
-Weather WeatherOf(const std::string& scene) {
-  const auto is = [&scene](std::string_view word) { return scene.find(word) != std::string::npos; };
-  if (is("open_water")) return Weather::kOpenWater;
-  if (is("waves") || is("rough")) return Weather::kWaves;
-  return is("rain") ? Weather::kRain : Weather::kClear;
-}
-
-using Condition = std::function<bool(const TrackRow&)>;
+using Condition = std::function<bool(const std::string& scene)>;
 
 Condition In(std::vector<Weather> weathers) {
-  return [weathers = std::move(weathers)](const TrackRow& row) { return std::ranges::find(weathers, WeatherOf(row.scene)) != weathers.end(); };
+  return [weathers = std::move(weathers)](const std::string& scene) { return std::ranges::find(weathers, WeatherOf(scene)) != weathers.end(); };
 }
 
-bool IsAnyScene(const TrackRow& /*row*/) { return true; }
+bool IsAnyScene(const std::string& /*scene*/) { return true; }
 
-bool HasBlackBuoys(const TrackRow& row) { return row.scene.find("black_buoys") != std::string::npos; }
-
-struct Target {
-  enum class Side { kAtLeast, kAtMost, kWithin };
-  std::string what;
-  Side side = Side::kAtMost;
-  double value = 0.0;
-  int decimals = 0;
-  Condition is_of;
-  std::function<double(const TrackRun::Row&)> figure;  // NaN: not shown
-  bool is_of_each_scene = false;                       // else of all runs together
-  double most = 0.0;                                   // of kWithin: from value to this
-
-  bool IsReachedBy(double reached) const {
-    if (side == Side::kWithin) return reached >= value && reached <= most;
-    return side == Side::kAtLeast ? reached >= value : reached <= value;
-  }
-  bool IsWorse(double one, double other) const {
-    // As ratios: half of the least is as far off as twice the most.
-    const auto excess = [this](double reached) { return std::max(value / reached, reached / most); };
-    if (side == Side::kWithin) return excess(one) > excess(other);
-    return side == Side::kAtMost ? one > other : one < other;
-  }
-  std::string Text() const {
-    if (side == Side::kWithin) return Number(value, decimals) + " to " + Number(most, decimals);
-    return (side == Side::kAtLeast ? ">= " : "<= ") + Number(value, decimals);
-  }
-};
+bool HasBlackBuoys(const std::string& scene) { return scene.find("black_buoys") != std::string::npos; }
 
 // Infinite: never.
 double PercentileOf(const Summary& summary, int percent) { return summary.count() > 0 ? summary.Percentile(percent) : kNan; }
 
 double GainOf(const TrackRun::Row& row) { return 100.0 * row.labels.Gain(); }
 
-std::vector<Target> Targets() {
-  using Side = Target::Side;
+std::vector<Target<TrackRun::Row>> Targets() {
   using Row = TrackRun::Row;
+  using Side = Target<Row>::Side;
   const auto clear = In({Weather::kClear, Weather::kOpenWater});
   const auto rough = In({Weather::kWaves, Weather::kRain});
   const auto mota = [](const Row& row) { return 100.0 * row.scores.Mota(); };
@@ -74,7 +41,7 @@ std::vector<Target> Targets() {
   const auto confirmed = [](std::size_t kind, int percent) {
     return [kind, percent](const Row& row) { return PercentileOf(row.scores.confirmed_s.at(kind), percent); };
   };
-  std::vector<Target> targets{
+  return {
       {"MOTA, %", Side::kAtLeast, 98.0, 1, clear, mota},
       {"MOTA in waves and rain, %", Side::kAtLeast, 96.0, 1, rough, mota},
       {"IDF1, %", Side::kAtLeast, 98.0, 1, clear, idf1},
@@ -124,46 +91,37 @@ std::vector<Target> Targets() {
        [](const Row& row) { return 100.0 * row.labels.by_tracks.lost.value(); }},
       {"single scans: things lost, %", Side::kAtMost, 4.0, 1, IsAnyScene, [](const Row& row) { return 100.0 * row.labels.single.lost.value(); }},
   };
-  return targets;
 }
 
-struct Reached {
-  double all = kNan;    // of all runs, or of the worst scene
-  double worst = kNan;  // of a scene
-  std::string worst_scene;
-};
-
-Reached ReachedBy(const Target& target, const std::vector<TrackRow>& scenes, const std::string& tracker) {
-  Reached reached;
+std::vector<TrackRow> OfTracker(const std::vector<TrackRow>& rows, const std::string& tracker) {
   std::vector<TrackRow> of_tracker;
-  for (const auto& scene : scenes) {
-    if (scene.row.tracker != tracker || !target.is_of(scene)) continue;
-    of_tracker.push_back(scene);
-    const double figure = target.figure(scene.row);
-    if (std::isnan(figure) || (!std::isnan(reached.worst) && !target.IsWorse(figure, reached.worst))) continue;
-    reached.worst = figure;
-    reached.worst_scene = scene.scene;
-  }
-  if (target.is_of_each_scene) {
-    reached.all = reached.worst;
-  } else if (const auto all = OverAll(of_tracker, ""); !all.empty()) {
-    reached.all = target.figure(all.front().row);
-  }
-  return reached;
+  std::ranges::copy_if(rows, std::back_inserter(of_tracker), [&](const TrackRow& row) { return row.row.tracker == tracker; });
+  return of_tracker;
 }
+
+TrackRun::Row SumOfTracker(const std::vector<TrackRow>& rows) { return OverAll(rows, "").front().row; }
 
 }  // namespace
+
+Weather WeatherOf(const std::string& scene) {
+  const auto is = [&scene](std::string_view word) { return scene.find(word) != std::string::npos; };
+  if (is("open_water")) return Weather::kOpenWater;
+  if (is("waves") || is("rough")) return Weather::kWaves;
+  return is("rain") ? Weather::kRain : Weather::kClear;
+}
 
 NamedTable TargetTable(const std::vector<TrackWorld>& worlds, const std::string& tracker, const std::string& other) {
   Table table({"world", "what", "target", tracker, "reached", "worst scene", other});
   for (const auto& world : worlds) {
+    const auto own = OfTracker(world.scenes, tracker);
+    const auto others = OfTracker(world.scenes, other);
     for (const auto& target : Targets()) {
-      const auto reached = ReachedBy(target, world.scenes, tracker);
+      const auto reached = ReachedBy(target, own, &TrackRow::row, SumOfTracker);
       if (std::isnan(reached.all)) continue;
-      const auto beside = ReachedBy(target, world.scenes, other);
-      table.Add(
-          {world.name, target.what, target.Text(), NumberOrNever(reached.all, target.decimals), target.IsReachedBy(reached.all) ? "yes" : "MISSED",
-           fmt::format("{} {}", NumberOrNever(reached.worst, target.decimals), reached.worst_scene), NumberOrNever(beside.all, target.decimals)});
+      Table::Row row{world.name};
+      std::ranges::move(TargetCells(target, reached), std::back_inserter(row));
+      row.push_back(NumberOrNever(ReachedBy(target, others, &TrackRow::row, SumOfTracker).all, target.decimals));
+      table.Add(std::move(row));
     }
   }
   return {"tracks_targets", "tracks: targets (all runs together; labels: mean over the scenes)", std::move(table)};

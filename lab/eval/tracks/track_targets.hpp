@@ -8,8 +8,7 @@
 
 namespace lookout::eval {
 
-/// Runs of one world, called `name`. Scenes whose name holds "waves", "rough" or "rain" are those, "open_water" is open water with crests, all others
-/// are clear.
+/// Runs of one world, called `name`.
 struct TrackWorld {
   std::string name;
   std::vector<TrackRow> scenes;  // one row of each scene and tracker (AddUp)
