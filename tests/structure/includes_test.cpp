@@ -165,6 +165,8 @@ TEST(Structure, FoldersOfTheLaboratoryIncludeOnlyWhatTheyMay) {
   const std::map<std::string, std::regex> allowed{{"data", std::regex("common/.*|services/segmenter/core/.*|tools/import/.*|lab/data/.*")},
                                                   {"sim", std::regex("common/.*|services/vlp16/.*|lab/sim/.*")},
                                                   {"eval", std::regex("common/.*|services/.*|tools/.*|lab/(data|sim|eval)/.*")},
+                                                  {"eval/methods", std::regex("(?!lab/eval/(tracks|report)).*")},
+                                                  {"eval/tracks", std::regex("(?!lab/eval/report).*")},
                                                   {"fit", std::regex("common/.*|services/segmenter/.*|lab/(data|sim|eval|fit)/.*")}};
   const std::regex ours("(common|services|tools|lab)/.*");
   int num_checked = 0;
@@ -173,6 +175,8 @@ TEST(Structure, FoldersOfTheLaboratoryIncludeOnlyWhatTheyMay) {
     for (const auto& include : Includes(file)) {
       if (!std::regex_match(include, ours)) continue;
       EXPECT_TRUE(std::regex_match(include, allowed.at(path.begin()->string()))) << "lab/" << path.string() << " may not include " << include;
+      const auto part = allowed.find(path.parent_path().string());
+      EXPECT_TRUE(part == allowed.end() || std::regex_match(include, part->second)) << "lab/" << path.string() << " may not include " << include;
       ++num_checked;
     }
   }

@@ -1,7 +1,7 @@
-#include "lab/eval/methods/failure_tables.hpp"
-
 #include <string>
 #include <utility>
+
+#include "lab/eval/methods/result_tables.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -1,5 +1,3 @@
-#include "lab/eval/methods/leave_out_tables.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +6,7 @@
 
 #include "lab/eval/methods/against_peers.hpp"
 #include "lab/eval/methods/leave_out.hpp"
+#include "lab/eval/methods/result_tables.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -13,8 +13,6 @@
 #include <utility>
 
 #include "lab/eval/methods/against_peers.hpp"
-#include "lab/eval/methods/failure_tables.hpp"
-#include "lab/eval/methods/leave_out_tables.hpp"
 #include "lab/eval/metrics.hpp"
 
 namespace lookout::eval {

@@ -15,4 +15,12 @@ std::vector<NamedTable> TablesOf(const Results& results);
 
 void PrintTables(const Results& results, std::ostream& out);
 
+// Of one world each; in TablesOf as well.
+
+/// The tables by which anything is chosen: ours on families that its evidence was not fitted on. Without rows where nothing was left out.
+std::vector<NamedTable> LeaveOutTablesOf(const Results& results);
+/// What becomes of things, of land and of clutter: how a method fails, and at which operating point. Tables whose rows name a scene stand below each
+/// other for several worlds, others side by side.
+std::vector<NamedTable> FailureTablesOf(const Results& results);
+
 }  // namespace lookout::eval

@@ -28,7 +28,6 @@
 #include "lab/eval/tracks/alert_kept.hpp"
 #include "lab/eval/tracks/alert_run.hpp"
 #include "lab/eval/tracks/alert_tables.hpp"
-#include "lab/eval/tracks/track_sources.hpp"
 #include "lab/eval/tracks/track_tables.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "services/tracker/params.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "lab/eval/tracks/run_options.hpp"
+#include "lab/eval/tracks/track_sources.hpp"
 
 namespace lookout::eval {
 

@@ -19,7 +19,6 @@
 #include "lab/eval/methods/figures.hpp"
 #include "lab/eval/table.hpp"
 #include "lab/eval/tracks/track_run.hpp"
-#include "lab/eval/tracks/track_sources.hpp"
 #include "lab/eval/tracks/track_tables.hpp"
 #include "lab/eval/tracks/track_targets.hpp"
 #include "tools/replay/chain.hpp"

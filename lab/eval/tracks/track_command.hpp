@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lab/eval/tracks/multi_object_tracker.hpp"
-#include "lab/eval/tracks/run_options.hpp"
+#include "lab/eval/tracks/track_sources.hpp"
 
 namespace lookout::eval {
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <stdexcept>
 
-#include "lab/eval/methods/leave_out_tables.hpp"
+#include "lab/eval/methods/result_tables.hpp"
 #include "lab/eval/methods/run_plan.hpp"
 #include "tests/support/files.hpp"
 
