@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "common/core/convex.hpp"
 #include "common/core/elementary.hpp"
+#include "common/core/outlines.hpp"
 
 namespace lookout {
 

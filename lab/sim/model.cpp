@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
-#include "common/core/convex.hpp"
+#include "common/core/outlines.hpp"
 
 namespace lookout::sim {
 

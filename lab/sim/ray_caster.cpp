@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/outlines.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -36,13 +37,6 @@ constexpr std::array kBeamRays{Offset{0.0, 0.0},    Offset{-0.8, 0.0},   Offset{
                                Offset{-0.4, 0.0},   Offset{0.4, 0.0},    Offset{0.0, -0.4}, Offset{0.0, 0.4},  Offset{-0.55, -0.55},
                                Offset{-0.55, 0.55}, Offset{0.55, -0.55}, Offset{0.55, 0.55}};
 constexpr std::size_t kNumProbeRays = 5;
-
-double DistanceFromOrigin(const Vector2d& a_m, const Vector2d& b_m) {
-  const Vector2d edge_m = b_m - a_m;
-  const double length2_m2 = edge_m.squaredNorm();
-  const double share = length2_m2 > 0.0 ? std::clamp(-a_m.dot(edge_m) / length2_m2, 0.0, 1.0) : 0.0;
-  return (a_m + share * edge_m).norm();
-}
 
 int WrapBin(int bin) { return ((bin % kNumBins) + kNumBins) % kNumBins; }
 
@@ -131,7 +125,7 @@ RayCaster::Bins RayCaster::BinsOf(Item& item, const Vector2d& eye_m) const {
     from_rad = std::min(from_rad, relative_rad - half_rad);
     to_rad = std::max(to_rad, relative_rad + half_rad);
     farthest_m = std::max(farthest_m, distance_m + radius_m);
-    nearest_m = std::min(nearest_m, DistanceFromOrigin(points_m[i], points_m[i + 1 < points_m.size() ? i + 1 : 0]) - radius_m);
+    nearest_m = std::min(nearest_m, DistanceToEdge(Vector2d::Zero(), points_m[i], points_m[i + 1 < points_m.size() ? i + 1 : 0]) - radius_m);
   }
   item.farthest_m = farthest_m;
   item.cosine_half = -1.0;

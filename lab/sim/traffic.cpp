@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "common/core/angles.hpp"
-#include "common/core/convex.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -18,19 +17,6 @@ constexpr double kStepS = 0.2;
 constexpr double kOwnHalfLengthM = 1.2;
 constexpr double kOwnHalfWidthM = 0.7;
 constexpr double kHeadroomM = 2.5;  // a man who stands on its deck, and a little more
-
-double DistanceToEdgeM(const Vector2d& p_m, const Vector2d& from_m, const Vector2d& to_m) {
-  const Vector2d edge_m = to_m - from_m;
-  const double length2_m2 = edge_m.squaredNorm();
-  const double share = length2_m2 > 0.0 ? std::clamp((p_m - from_m).dot(edge_m) / length2_m2, 0.0, 1.0) : 0.0;
-  return (p_m - from_m - share * edge_m).norm();
-}
-
-bool DoCross(const Vector2d& a_m, const Vector2d& b_m, const Vector2d& c_m, const Vector2d& d_m) {
-  const Vector2d ab_m = b_m - a_m;
-  const Vector2d cd_m = d_m - c_m;
-  return Cross(ab_m, c_m - a_m) * Cross(ab_m, d_m - a_m) < 0.0 && Cross(cd_m, a_m - c_m) * Cross(cd_m, b_m - c_m) < 0.0;
-}
 
 double RadiusOf(const Outline& outline_m) {
   double radius_m = 0.0;
@@ -46,34 +32,6 @@ Outline At(const Placement& placement, const Outline& outline_m) {
 }
 
 }  // namespace
-
-bool Contains(const Outline& outline_m, const Vector2d& p_m) {
-  bool is_inside = false;
-  for (std::size_t i = 0; i < outline_m.size(); ++i) {
-    const Vector2d& a_m = outline_m[i];
-    const Vector2d& b_m = outline_m[i + 1 < outline_m.size() ? i + 1 : 0];
-    if ((a_m.y() > p_m.y()) == (b_m.y() > p_m.y())) continue;
-    // An edge to the east of the point that crosses its northing.
-    if (p_m.x() < a_m.x() + (p_m.y() - a_m.y()) / (b_m.y() - a_m.y()) * (b_m.x() - a_m.x())) is_inside = !is_inside;
-  }
-  return is_inside;
-}
-
-double DistanceM(const Outline& a_m, const Outline& b_m) {
-  if (a_m.empty() || b_m.empty()) return std::numeric_limits<double>::infinity();
-  // Without crossing edges either one holds the other as a whole, or they are apart.
-  if (Contains(a_m, b_m[0]) || Contains(b_m, a_m[0])) return 0.0;
-  double distance_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < a_m.size(); ++i) {
-    const Vector2d& a_to_m = a_m[i + 1 < a_m.size() ? i + 1 : 0];
-    for (std::size_t k = 0; k < b_m.size(); ++k) {
-      const Vector2d& b_to_m = b_m[k + 1 < b_m.size() ? k + 1 : 0];
-      if (DoCross(a_m[i], a_to_m, b_m[k], b_to_m)) return 0.0;
-      distance_m = std::min({distance_m, DistanceToEdgeM(a_m[i], b_m[k], b_to_m), DistanceToEdgeM(b_m[k], a_m[i], a_to_m)});
-    }
-  }
-  return distance_m;
-}
 
 Traffic::Traffic(double checked_s) : num_samples_(static_cast<int>(checked_s / kStepS) + 1) {}
 
@@ -118,7 +76,7 @@ double Traffic::NearestM(const Mover& a, const Mover& b, double limit_m) const {
     const Shape& of_a = a.shapes[std::min(i, a.shapes.size() - 1)];
     const Shape& of_b = b.shapes[std::min(i, b.shapes.size() - 1)];
     double distance_m = (of_a.center_m - of_b.center_m).norm() - of_a.radius_m - of_b.radius_m;
-    if (distance_m < limit_m) distance_m = DistanceM(of_a.outline_m, of_b.outline_m);
+    if (distance_m < limit_m) distance_m = GapBetween(of_a.outline_m, of_b.outline_m);
     nearest_m = std::min(nearest_m, distance_m);
     if (nearest_m <= 0.0) return 0.0;
     // They cannot come within the limit before they have gone the rest of the way.

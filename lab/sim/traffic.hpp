@@ -1,4 +1,4 @@
-// Outlines seen from above, and how near objects come to each other in the first minute of a scene.
+// How near objects come to each other in the first minute of a scene.
 #pragma once
 
 #include <functional>
@@ -6,18 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "common/core/outlines.hpp"
 #include "lab/sim/scene.hpp"
 
 namespace lookout::sim {
 
 /// A simple polygon seen from above.
 using Outline = std::vector<Eigen::Vector2d>;
-
-/// A vertex or an edge itself may count either way.
-bool Contains(const Outline& outline_m, const Eigen::Vector2d& p_m);
-
-/// @return shortest distance between two polygons; 0 when they touch or one holds the other. Cost: product of their vertices.
-double DistanceM(const Outline& a_m, const Outline& b_m);
 
 /// Between two objects in the first part of a scene, sampled every 0.2 s.
 struct Approach {

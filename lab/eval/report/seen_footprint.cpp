@@ -6,8 +6,8 @@
 #include <map>
 
 #include "common/core/angles.hpp"
-#include "common/core/convex.hpp"
 #include "common/core/frames.hpp"
+#include "common/core/outlines.hpp"
 
 namespace lookout::eval {
 namespace {

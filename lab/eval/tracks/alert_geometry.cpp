@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
-#include "common/core/convex.hpp"
+#include "common/core/outlines.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -44,7 +44,7 @@ Eigen::AlignedBox2d BoxAround(const Polygon& corners_m) {
   return box_m;
 }
 
-bool IsInside(const Vector2d& p_m, const Polygon& corners_m) { return corners_m.size() > 2 && DistanceToOutline(p_m, corners_m).outside_m == 0.0; }
+bool IsInside(const Vector2d& p_m, const Polygon& corners_m) { return corners_m.size() > 2 && Contains(corners_m, p_m); }
 
 // Where a hull is after some time, against where it is now.
 struct Shift {

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
-#include "common/core/convex.hpp"
+#include "common/core/outlines.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -21,30 +20,6 @@ Eigen::AlignedBox2d BoxOf(const Polygon& polygon_m) {
   return box_m;
 }
 
-// The inside is not looked at where a polygon has none.
-double DistanceTo(const Vector2d& p_m, const Polygon& polygon_m) {
-  const auto distance = DistanceToOutline(p_m, polygon_m);
-  return polygon_m.size() > 2 ? distance.outside_m : distance.edge_m;
-}
-
-// Whether two edges cross in a point that is inside of both.
-bool DoCross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
-  const double side_c = Cross(b - a, c - a);
-  const double side_d = Cross(b - a, d - a);
-  const double side_a = Cross(d - c, a - c);
-  const double side_b = Cross(d - c, b - c);
-  return ((side_c > 0.0) != (side_d > 0.0)) && ((side_a > 0.0) != (side_b > 0.0)) && side_c != 0.0 && side_d != 0.0 && side_a != 0.0 && side_b != 0.0;
-}
-
-bool DoOutlinesCross(const Polygon& one_m, const Polygon& other_m) {
-  for (std::size_t i = 0, before_i = one_m.size() - 1; i < one_m.size(); before_i = i++) {
-    for (std::size_t k = 0, before_k = other_m.size() - 1; k < other_m.size(); before_k = k++) {
-      if (DoCross(one_m[before_i], one_m[i], other_m[before_k], other_m[k])) return true;
-    }
-  }
-  return false;
-}
-
 Polygon Moved(Polygon polygon_m, const Vector2d& by_m) {
   for (auto& corner_m : polygon_m) corner_m += by_m;
   return polygon_m;
@@ -53,15 +28,9 @@ Polygon Moved(Polygon polygon_m, const Vector2d& by_m) {
 }  // namespace
 
 double HullGap(const Polygon& one_m, const Polygon& other_m, double enough_m) {
-  const auto box_m = BoxOf(one_m);
-  const auto other_box_m = BoxOf(other_m);
-  const double box_gap_m = std::sqrt(box_m.squaredExteriorDistance(other_box_m));
+  const double box_gap_m = std::sqrt(BoxOf(one_m).squaredExteriorDistance(BoxOf(other_m)));
   if (box_gap_m > enough_m) return box_gap_m;
-  double gap_m = std::numeric_limits<double>::infinity();
-  for (const auto& corner_m : one_m) gap_m = std::min(gap_m, DistanceTo(corner_m, other_m));
-  for (const auto& corner_m : other_m) gap_m = std::min(gap_m, DistanceTo(corner_m, one_m));
-  if (gap_m > 0.0 && box_gap_m == 0.0 && DoOutlinesCross(one_m, other_m)) return 0.0;
-  return gap_m;
+  return GapBetween(one_m, other_m);
 }
 
 Approach ApproachOf(const Polygon& own_m, const Vector2d& own_mps, const Polygon& other_m, const Vector2d& other_mps) {

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "common/core/angles.hpp"
-#include "common/core/convex.hpp"
+#include "common/core/outlines.hpp"
 #include "lab/eval/tracks/track_geometry.hpp"
 
 namespace lookout::eval {

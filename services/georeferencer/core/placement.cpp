@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "common/core/angles.hpp"
-#include "common/core/convex.hpp"
 #include "common/core/elementary.hpp"
 #include "common/core/frames.hpp"
 #include "common/core/geodesy.hpp"
+#include "common/core/outlines.hpp"
 
 namespace lookout::georeferencer {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
-#include "common/core/convex.hpp"
 #include "common/core/elementary.hpp"
+#include "common/core/outlines.hpp"
 
 namespace lookout::segmenter {
 

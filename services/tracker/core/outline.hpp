@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "common/core/convex.hpp"
+#include "common/core/outlines.hpp"
 
 namespace lookout::tracker {
 

@@ -85,7 +85,7 @@ TEST_P(Family, KeepsTheOwnBoatFreeOfEverything) {
     const Scene scene = Make(seed);
     for (const auto& object : scene.objects) {
       if (GetParam() == "alongside" && (object.kind == "pier" || object.kind == "bridge")) continue;  // one may lie below its deck
-      EXPECT_GT(DistanceM(OwnOutline(scene, 0.0), OnMap(object)), GetParam() == "alongside" ? 0.34 : 0.5) << object.name << ", seed " << seed;
+      EXPECT_GT(GapBetween(OwnOutline(scene, 0.0), OnMap(object)), GetParam() == "alongside" ? 0.34 : 0.5) << object.name << ", seed " << seed;
     }
   }
 }
@@ -97,7 +97,7 @@ TEST(Families, AreLaidOutAnewWhereTheOwnBoatHasNoPlace) {
   for (const std::uint64_t seed : {83U, 126U, 131U, 200U}) {
     Scene scene;
     ASSERT_NO_THROW(scene = LoadScene(file, seed)) << seed;
-    for (const auto& object : scene.objects) EXPECT_GT(DistanceM(OwnOutline(scene, 0.0), OnMap(object)), 2.99) << seed;
+    for (const auto& object : scene.objects) EXPECT_GT(GapBetween(OwnOutline(scene, 0.0), OnMap(object)), 2.99) << seed;
     EXPECT_EQ(LayoutOf(scene), LayoutOf(LoadScene(file, seed))) << seed;
     layouts.insert(LayoutOf(scene));
   }
@@ -119,7 +119,7 @@ TEST(Alongside, HasThingsNearTheOwnBoatInMostLayoutsAndNoneInIt) {
       for (const double time_s : {0.0, 3.0, 6.0}) {
         Outline outline_m;
         for (const auto& p_m : object.outline_m) outline_m.push_back(object.track.At(time_s).ToMap(p_m));
-        const double distance_m = DistanceM(OwnOutline(scene, time_s), outline_m);
+        const double distance_m = GapBetween(OwnOutline(scene, time_s), outline_m);
         EXPECT_GE(distance_m, 0.34) << object.name << ", seed " << seed << " at " << time_s << " s";
         if (time_s == 0.0 && distance_m < 3.0) ++num_things;
       }
@@ -152,12 +152,12 @@ TEST(Beside, ThingsLieAtTheirGapInFrontOfTheEdge) {
   for (std::size_t i = 1; i < scene.objects.size(); ++i) {
     const auto& kayak = scene.objects[i];
     EXPECT_LT(kayak.track.start.position_map_m.y(), 0.0) << "land is on the port side of a line to the east";
-    const double gap_m = DistanceM(OnMap(kayak), quay_m);
+    const double gap_m = GapBetween(OnMap(kayak), quay_m);
     EXPECT_GE(gap_m, 0.99) << i;
     EXPECT_LE(gap_m, 2.01) << i;
     EXPECT_NEAR(std::abs(std::sin(kayak.track.start.heading_rad)), 1.0, 1e-6) << "parallel";
   }
-  const double own_gap_m = DistanceM(OwnOutline(scene, 0.0), quay_m);
+  const double own_gap_m = GapBetween(OwnOutline(scene, 0.0), quay_m);
   EXPECT_GE(own_gap_m, 2.99);
   EXPECT_LE(own_gap_m, 9.01);
 }
@@ -169,14 +169,14 @@ TEST(Beside, ARowKeepsItsGapsAndEachMemberItsPartner) {
                                    " beside { object: \"quay\" gap_m: 1 turned: OUT row_gap_m: 2 } }\n",
                                "s", 5);
   ASSERT_EQ(row.objects.size(), 5U);
-  for (std::size_t i = 2; i < 5; ++i) EXPECT_NEAR(DistanceM(OnMap(row.objects[i - 1]), OnMap(row.objects[i])), 2.0, 1e-6);
+  for (std::size_t i = 2; i < 5; ++i) EXPECT_NEAR(GapBetween(OnMap(row.objects[i - 1]), OnMap(row.objects[i])), 2.0, 1e-6);
   const Scene pairs = ParseScene(
       kFreeBoat + quay +
           "object { kind: BUOY name: \"ball\" number: 3 east_m: [-50, 50] north_m: [-60, -30] min_distance_m: 12 }\n"
           "object { kind: KAYAK name: \"kayak\" number: 9 min_distance_m: 0 beside { object: \"ball\" gap_m: 1 is_each: true turned: IN } }\n",
       "s", 5);
   ASSERT_EQ(pairs.objects.size(), 7U) << "a kayak for each ball";
-  for (std::size_t i = 1; i <= 3; ++i) EXPECT_NEAR(DistanceM(OnMap(pairs.objects[i]), OnMap(pairs.objects[i + 3])), 1.0, 0.05);
+  for (std::size_t i = 1; i <= 3; ++i) EXPECT_NEAR(GapBetween(OnMap(pairs.objects[i]), OnMap(pairs.objects[i + 3])), 1.0, 0.05);
 }
 
 // They ended at the border of the reeds, up to 4 m before the bank.
@@ -210,7 +210,7 @@ TEST(Opposite, BanksRunAtTheirDistance) {
                                      "object { kind: QUAY name: \"other\" opposite { object: \"quay\" distance_m: 20 } land { edge: FACE } }\n",
                                  "s", 2);
   ASSERT_EQ(scene.objects.size(), 2U);
-  EXPECT_NEAR(DistanceM(OnMap(scene.objects[0]), OnMap(scene.objects[1])), 20.0, 0.6);
+  EXPECT_NEAR(GapBetween(OnMap(scene.objects[0]), OnMap(scene.objects[1])), 20.0, 0.6);
 }
 
 TEST(Layouts, OneIsDrawnWithItsOwnBoatAndItsObjectsAlone) {
@@ -244,7 +244,7 @@ TEST(OwnBoat, ThingsLieBesideItWhenItComesBeforeThem) {
     const Outline own_m = OwnOutline(scene, 0.0);
     ASSERT_EQ(scene.objects.size(), 6U) << seed;
     for (std::size_t i = 1; i < 6; ++i) {
-      const double distance_m = DistanceM(own_m, OnMap(scene.objects[i]));
+      const double distance_m = GapBetween(own_m, OnMap(scene.objects[i]));
       EXPECT_GE(distance_m, i < 3 ? 0.49 : 1.99) << scene.objects[i].name << ", seed " << seed;
       EXPECT_LE(distance_m, i < 3 ? 1.01 : 4.5) << scene.objects[i].name << ", seed " << seed;
     }
@@ -263,12 +263,12 @@ TEST(OwnBoat, LiesBelowADeckAlone) {
   };
   const Scene scene = ParseScene(text("height_m: 4 is_passed_under: true"), "s.txtpb", 2);
   const Outline own_m = OwnOutline(scene, 0.0);
-  EXPECT_EQ(DistanceM(own_m, OnMap(scene.objects[0])), 0.0);
+  EXPECT_EQ(GapBetween(own_m, OnMap(scene.objects[0])), 0.0);
   for (const auto& part : scene.objects[0].parts) {
     const auto* pile = std::get_if<Cylinder>(&part.solid);
     if (pile == nullptr || pile->bottom_m > 0.0) continue;
     const Vector2d at_m = scene.objects[0].track.start.ToMap(pile->center_m);
-    EXPECT_GE(DistanceM(own_m, {at_m, at_m, at_m}), pile->radius_m + 0.29);
+    EXPECT_GE(GapBetween(own_m, {at_m, at_m, at_m}), pile->radius_m + 0.29);
   }
   for (const auto& low : {"height_m: 4", "height_m: 2 is_passed_under: true"}) {
     EXPECT_THROW(ParseScene(text(low), "s.txtpb", 2), config::ConfigError) << low;

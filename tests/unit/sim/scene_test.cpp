@@ -115,7 +115,7 @@ TEST(Scenes, NothingComesWithinAMetreAndAHalfOfTheOwnBoat) {
         Outline hull_m;
         for (const auto& p_m : Rectangle(-1.2, 1.2, -0.7, 0.7)) hull_m.push_back(own.ToMap(p_m));
         for (const auto& object : scene.objects) {
-          ASSERT_GE(DistanceM(OutlineAt(object, time_s), hull_m), 1.5 - 1e-9) << scene_name << ' ' << object.name << " at " << time_s << " s";
+          ASSERT_GE(GapBetween(OutlineAt(object, time_s), hull_m), 1.5 - 1e-9) << scene_name << ' ' << object.name << " at " << time_s << " s";
         }
       }
     }
@@ -130,7 +130,7 @@ TEST(Scenes, DrawnObjectsKeepTheirDistances) {
       for (const auto& a : scene.objects) {
         for (const auto& b : scene.objects) {
           if (a.id < b.id) {
-            ASSERT_GE(DistanceM(OutlineAt(a, time_s), OutlineAt(b, time_s)), 2.9) << a.name << ' ' << b.name << " seed " << seed;
+            ASSERT_GE(GapBetween(OutlineAt(a, time_s), OutlineAt(b, time_s)), 2.9) << a.name << ' ' << b.name << " seed " << seed;
           }
         }
       }
@@ -151,7 +151,7 @@ TEST(Scenes, LakeKeepsItsBoatsApartForTenMinutes) {
 TEST(Scenes, EightObjectsHasItsPairFourMetresApart) {
   const auto scene = MakeScene("eight_objects", 1);
   ASSERT_EQ(scene.objects.size(), 8U);
-  EXPECT_NEAR(DistanceM(OutlineAt(scene.objects[0], 0.0), OutlineAt(scene.objects[1], 0.0)), 4.0, 1e-9);
+  EXPECT_NEAR(GapBetween(OutlineAt(scene.objects[0], 0.0), OutlineAt(scene.objects[1], 0.0)), 4.0, 1e-9);
 }
 
 // By the name before the number: in the order of their numbers.
@@ -170,7 +170,7 @@ TEST(Scenes, MarinaHasGapsOfThreeToEightMetres) {
       const auto row = RowOf(scene, name);
       ASSERT_GE(row.size(), 3U);
       for (std::size_t i = 1; i < row.size(); ++i) {
-        const double gap_m = DistanceM(OutlineAt(*row[i - 1], 0.0), OutlineAt(*row[i], 0.0));
+        const double gap_m = GapBetween(OutlineAt(*row[i - 1], 0.0), OutlineAt(*row[i], 0.0));
         EXPECT_GE(gap_m, 3.0) << row[i]->name << " seed " << seed;
         EXPECT_LE(gap_m, 8.1) << row[i]->name << " seed " << seed << ": 8 m along the row, and one lies before the other";
       }
@@ -184,13 +184,13 @@ TEST(Scenes, CanalHasWallsAtEightToFifteenMetresAndBoatsWithinAMetreOfThem) {
     for (const auto* name : {"north", "south"}) {
       const auto wall_m = OutlineAt(*RowOf(scene, "wall")[std::string(name) == "north" ? 0 : 1], 0.0);
       for (const auto* boat : RowOf(scene, name)) {
-        const double gap_m = DistanceM(OutlineAt(*boat, 0.0), wall_m);
+        const double gap_m = GapBetween(OutlineAt(*boat, 0.0), wall_m);
         EXPECT_GE(gap_m, 0.25) << boat->name << " seed " << seed;
         EXPECT_LE(gap_m, 1.0) << boat->name << " seed " << seed;
       }
       for (const double time_s : {0.0, 30.0, 60.0}) {
         const Eigen::Vector2d own_m = StateAt(scene.own_motion, 0.5, time_s).position_map_m.head<2>();
-        const double distance_m = DistanceM({own_m, own_m, own_m}, wall_m);
+        const double distance_m = GapBetween({own_m, own_m, own_m}, wall_m);
         EXPECT_GE(distance_m, 8.0) << name << " seed " << seed;
         EXPECT_LE(distance_m, 15.0) << name << " seed " << seed;
       }

@@ -58,7 +58,7 @@ TEST(DrawnKinds, OutlinesHoldAllPartsOfTheirObjects) {
         const Bounds bounds = BoundsOf(part.solid);
         for (const auto& p_m : bounds.points_m) {
           // What hangs from a dock may stand out of it by as much as a fender, a ladder or a foot.
-          const double out_m = Contains(object.outline_m, p_m) ? 0.0 : DistanceM(object.outline_m, {p_m, p_m, p_m});
+          const double out_m = Contains(object.outline_m, p_m) ? 0.0 : GapBetween(object.outline_m, {p_m, p_m, p_m});
           EXPECT_LE(out_m, kind.is_in_water ? 0.01 : 0.75) << kind.name << ' ' << seed;
         }
       }
@@ -116,7 +116,7 @@ TEST(DrawnKinds, AreMetByRaysFromAllSidesWithinTheirBounds) {
           EXPECT_GE(met_m.z(), bounds.low_m - 1e-6) << kind.name << ' ' << seed;
           EXPECT_LE(met_m.z(), bounds.high_m + 1e-6) << kind.name << ' ' << seed;
           const Eigen::Vector2d plan_m = met_m.head<2>();
-          const double out_m = Contains(bounds.points_m, plan_m) ? 0.0 : DistanceM(bounds.points_m, {plan_m, plan_m, plan_m});
+          const double out_m = Contains(bounds.points_m, plan_m) ? 0.0 : GapBetween(bounds.points_m, {plan_m, plan_m, plan_m});
           EXPECT_LE(out_m, bounds.radius_m + 1e-6) << kind.name << ' ' << seed;
           EXPECT_GE(hit->incidence_cosine, 0.0);
           EXPECT_LE(hit->incidence_cosine, 1.0 + 1e-9);

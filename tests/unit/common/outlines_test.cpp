@@ -1,4 +1,4 @@
-#include "common/core/convex.hpp"
+#include "common/core/outlines.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,8 @@
-#include "common/core/convex.hpp"
+#include "common/core/outlines.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <limits>
 
 #include "common/core/angles.hpp"
@@ -10,6 +11,12 @@
 namespace lookout {
 
 namespace {
+
+bool DoCross(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m, const Eigen::Vector2d& c_m, const Eigen::Vector2d& d_m) {
+  const Eigen::Vector2d ab_m = b_m - a_m;
+  const Eigen::Vector2d cd_m = d_m - c_m;
+  return Cross(ab_m, c_m - a_m) * Cross(ab_m, d_m - a_m) < 0.0 && Cross(cd_m, a_m - c_m) * Cross(cd_m, b_m - c_m) < 0.0;
+}
 
 // What lies within the four outermost places is no corner (Akl and Toussaint).
 void DropInner(std::vector<Eigen::Vector2d>& places_m) {
@@ -29,6 +36,41 @@ void DropInner(std::vector<Eigen::Vector2d>& places_m) {
 }
 
 }  // namespace
+
+double DistanceToEdge(const Eigen::Vector2d& p_m, const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
+  const Eigen::Vector2d edge_m = to_m - from_m;
+  const double length2_m2 = edge_m.squaredNorm();
+  const double share = length2_m2 > 0.0 ? std::clamp((p_m - from_m).dot(edge_m) / length2_m2, 0.0, 1.0) : 0.0;
+  return (p_m - from_m - share * edge_m).norm();
+}
+
+bool Contains(const std::vector<Eigen::Vector2d>& outline_m, const Eigen::Vector2d& p_m) {
+  bool is_inside = false;
+  for (std::size_t i = 0; i < outline_m.size(); ++i) {
+    const Eigen::Vector2d& a_m = outline_m[i];
+    const Eigen::Vector2d& b_m = outline_m[i + 1 < outline_m.size() ? i + 1 : 0];
+    if ((a_m.y() > p_m.y()) == (b_m.y() > p_m.y())) continue;
+    // An edge to the east of the point that crosses its northing.
+    if (p_m.x() < a_m.x() + (p_m.y() - a_m.y()) / (b_m.y() - a_m.y()) * (b_m.x() - a_m.x())) is_inside = !is_inside;
+  }
+  return is_inside;
+}
+
+double GapBetween(const std::vector<Eigen::Vector2d>& one_m, const std::vector<Eigen::Vector2d>& other_m) {
+  if (one_m.empty() || other_m.empty()) return std::numeric_limits<double>::infinity();
+  // Without crossing edges either one holds the other as a whole, or they are apart.
+  if (Contains(one_m, other_m[0]) || Contains(other_m, one_m[0])) return 0.0;
+  double distance_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < one_m.size(); ++i) {
+    const Eigen::Vector2d& one_to_m = one_m[i + 1 < one_m.size() ? i + 1 : 0];
+    for (std::size_t k = 0; k < other_m.size(); ++k) {
+      const Eigen::Vector2d& other_to_m = other_m[k + 1 < other_m.size() ? k + 1 : 0];
+      if (DoCross(one_m[i], one_to_m, other_m[k], other_to_m)) return 0.0;
+      distance_m = std::min({distance_m, DistanceToEdge(one_m[i], other_m[k], other_to_m), DistanceToEdge(other_m[k], one_m[i], one_to_m)});
+    }
+  }
+  return distance_m;
+}
 
 std::vector<Eigen::Vector2d> ConvexHull(std::vector<Eigen::Vector2d> places_m, double flat_m2) {
   if (flat_m2 <= 0.0) DropInner(places_m);

@@ -1,4 +1,4 @@
-// Outlines seen from above: convex hulls, the rectangle of least area around one, the centre of an area.
+// Outlines seen from above: distances, convex hulls, the rectangle of least area around one, the centre of an area.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,6 +12,16 @@ namespace lookout {
 
 /// Positive where b is counter-clockwise of a.
 inline double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// From a point to the line from one place to another.
+double DistanceToEdge(const Eigen::Vector2d& p_m, const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
+
+/// @param outline_m  a simple polygon, in either direction. A vertex or an edge itself may count either way
+bool Contains(const std::vector<Eigen::Vector2d>& outline_m, const Eigen::Vector2d& p_m);
+
+/// @param one_m, other_m  simple polygons, convex or not, in either direction; one of one corner is a point, of two a line
+/// @return shortest distance; 0 where they touch or one holds the other; infinite where one has no corner. Cost: product of their corners.
+double GapBetween(const std::vector<Eigen::Vector2d>& one_m, const std::vector<Eigen::Vector2d>& other_m);
 
 /// The hull of points in the order of x, then y, each at a place of its own: the lower side towards greater x, then the upper one back.
 ///
