@@ -17,6 +17,36 @@ const Polygon2d kSquare{{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}};
 const Polygon2d kLine{{0.0, 0.0}, {3.0, 4.0}};
 const Polygon2d kPoint{{-7.0, 11.0}};
 
+Polygon2d Square(double east_m, double north_m, double half_m) {
+  return {{east_m - half_m, north_m - half_m},
+          {east_m + half_m, north_m - half_m},
+          {east_m + half_m, north_m + half_m},
+          {east_m - half_m, north_m + half_m}};
+}
+
+TEST(Outlines, DistanceIsThatOfTheNearestEdges) {
+  EXPECT_DOUBLE_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(5.0, 0.5, 1.0)), 3.0);
+  EXPECT_DOUBLE_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(5.0, 6.0, 1.0)), 5.0) << "corner to corner: 3, 4, 5";
+}
+
+TEST(Outlines, DistanceIsZeroWhenTheyCrossTouchOrHoldEachOther) {
+  EXPECT_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(1.5, 0.0, 1.0)), 0.0);
+  EXPECT_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(2.0, 0.0, 1.0)), 0.0);
+  EXPECT_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(0.0, 0.0, 9.0)), 0.0);
+  EXPECT_EQ(GapBetween(Square(0.0, 0.0, 9.0), Square(0.0, 0.0, 1.0)), 0.0);
+  // A cross: no corner of one lies in the other.
+  EXPECT_EQ(GapBetween(Polygon2d{{-9.0, -1.0}, {9.0, -1.0}, {9.0, 1.0}, {-9.0, 1.0}}, Polygon2d{{-1.0, -9.0}, {1.0, -9.0}, {1.0, 9.0}, {-1.0, 9.0}}),
+            0.0);
+}
+
+TEST(Outlines, HoldsWhatLiesInItAlsoWhenItIsNotConvex) {
+  const Polygon2d hook_m{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {3.0, 4.0}, {3.0, 1.0}, {0.0, 1.0}};
+  EXPECT_TRUE(Contains(hook_m, {3.5, 3.0}));
+  EXPECT_TRUE(Contains(hook_m, {0.5, 0.5}));
+  EXPECT_FALSE(Contains(hook_m, {1.0, 3.0}));
+  EXPECT_FALSE(Contains(hook_m, {5.0, 0.5}));
+}
+
 TEST(RectangleAround, IsThatOfLeastArea) {
   const double angle_rad = DegToRad(130.0);
   const Eigen::Vector2d along(std::cos(angle_rad), std::sin(angle_rad));

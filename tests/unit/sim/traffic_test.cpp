@@ -13,28 +13,6 @@ Outline Square(double east_m, double north_m, double half_m) {
 
 SceneObject Box(const std::string& name, const Track& track) { return {1, name, "buoy", track, {}, Square(0.0, 0.0, 1.0)}; }
 
-TEST(Outline, DistanceIsThatOfTheNearestEdges) {
-  EXPECT_DOUBLE_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(5.0, 0.5, 1.0)), 3.0);
-  EXPECT_DOUBLE_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(5.0, 6.0, 1.0)), 5.0) << "corner to corner: 3, 4, 5";
-}
-
-TEST(Outline, DistanceIsZeroWhenTheyCrossTouchOrHoldEachOther) {
-  EXPECT_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(1.5, 0.0, 1.0)), 0.0);
-  EXPECT_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(2.0, 0.0, 1.0)), 0.0);
-  EXPECT_EQ(GapBetween(Square(0.0, 0.0, 1.0), Square(0.0, 0.0, 9.0)), 0.0);
-  EXPECT_EQ(GapBetween(Square(0.0, 0.0, 9.0), Square(0.0, 0.0, 1.0)), 0.0);
-  // A cross: no corner of one lies in the other.
-  EXPECT_EQ(GapBetween(Rectangle(-9.0, 9.0, -1.0, 1.0), Rectangle(-1.0, 1.0, -9.0, 9.0)), 0.0);
-}
-
-TEST(Outline, HoldsWhatLiesInItAlsoWhenItIsNotConvex) {
-  const Outline hook_m{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {3.0, 4.0}, {3.0, 1.0}, {0.0, 1.0}};
-  EXPECT_TRUE(Contains(hook_m, {3.5, 3.0}));
-  EXPECT_TRUE(Contains(hook_m, {0.5, 0.5}));
-  EXPECT_FALSE(Contains(hook_m, {1.0, 3.0}));
-  EXPECT_FALSE(Contains(hook_m, {5.0, 0.5}));
-}
-
 TEST(Traffic, FindsWhatMeetsAfterAWhile) {
   OwnMotion still;
   Traffic traffic(60.0);
