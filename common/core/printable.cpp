@@ -32,6 +32,22 @@ bool IsControl(std::uint32_t code) {
          (code >= 0x2066 && code <= 0x2069);
 }
 
+// No writing needs it, and nobody sees it: soft hyphen, zero width space, marks of direction, word joiner and invisible operators, byte order mark,
+// interlinear annotations, tags, and code points that are no characters.
+bool IsHidden(std::uint32_t code) {
+  return code == 0xAD || code == 0x61C || code == 0x180E || code == 0x200B || code == 0x200E || code == 0x200F ||
+         (code >= 0x2060 && code <= 0x206F) || code == 0xFEFF || (code >= 0xFFF0 && code <= 0xFFFB) || (code >= 0xFDD0 && code <= 0xFDEF) ||
+         (code & 0xFFFEU) == 0xFFFE || (code >= 0xE0000 && code <= 0xE00FF);
+}
+
+// Spaces and fillers of all scripts, joiners and variation selectors: nothing to see where they are all.
+bool IsBlank(std::uint32_t code) {
+  return code == 0x20 || code == 0xA0 || code == 0x34F || code == 0x115F || code == 0x1160 || code == 0x1680 || code == 0x17B4 || code == 0x17B5 ||
+         (code >= 0x180B && code <= 0x180F) || (code >= 0x2000 && code <= 0x200A) || code == 0x200C || code == 0x200D || code == 0x202F ||
+         code == 0x205F || code == 0x2800 || code == 0x3000 || code == 0x3164 || code == 0xFFA0 || (code >= 0xFE00 && code <= 0xFE0F) ||
+         (code >= 0xE0100 && code <= 0xE01EF);
+}
+
 std::string Replaced(std::string_view text, std::string_view end_of_line) {
   std::string printable;
   printable.reserve(text.size());
@@ -63,6 +79,18 @@ std::string Printable(std::string_view text) {
 std::string PrintableLines(std::string_view text) { return Replaced(text, "\n  "); }
 
 bool IsPrintableLine(std::string_view text) { return Replaced(text, "?") == text && text.find('\n') == std::string_view::npos; }
+
+bool IsName(std::string_view text) {
+  if (text.size() > kMostNameBytes || !IsPrintableLine(text)) return false;
+  bool has_seen = false;
+  while (!text.empty()) {
+    std::uint32_t code = kNone;
+    text.remove_prefix(CharacterBytes(text, code));  // not 0: the line is printable
+    if (IsHidden(code)) return false;
+    has_seen = has_seen || !IsBlank(code);
+  }
+  return has_seen;
+}
 
 std::string CsvText(std::string_view text) {
   auto printable = Replaced(text, "\n");

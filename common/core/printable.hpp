@@ -1,6 +1,7 @@
 // Text from outside (messages, logs, captures, configs, names of files) made fit for a terminal, a journal or a table: no escape sequence passes.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,15 @@ std::string PrintableLines(std::string_view text);
 
 /// @return whether it is one line of UTF-8 with none of the control characters above
 bool IsPrintableLine(std::string_view text);
+
+/// Of a name that people give to a thing (order_t).
+inline constexpr std::size_t kMostNameBytes = 40;
+
+/// @return whether it can be read and told from others: a printable line of at most kMostNameBytes, not empty, with something to see in it, and with
+/// no
+///         character that is invisible wherever it stands. Joiners and variation selectors, with which some scripts are written, are allowed beside
+///         what is seen.
+bool IsName(std::string_view text);
 
 /// @return a text cell of comma separated values: as PrintableLines without the spaces, quoted where RFC 4180 wants it, and with an apostrophe before
 ///         it where a spreadsheet would take it for a formula (it begins with = + - @). Not for numbers: "-1.5" would be text.

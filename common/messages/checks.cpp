@@ -286,14 +286,11 @@ std::optional<Fault> FaultOf(const alert_ack_t& message) {
 }
 
 std::optional<Fault> FaultOf(const order_t& message) {
-  constexpr std::size_t kMaxNameBytes = 40;
   if (!UtimeFromWire(message.utime_us)) return kOrderTime;
   if (message.source.size() > kMaxSourceBytes) return kOrderSource;
   if (message.kind == order_t::KIND_SILENCE) return std::nullopt;
   if (message.kind == order_t::KIND_NAME) {
-    const bool is_name = message.name.size() <= kMaxNameBytes && IsPrintableLine(message.name) &&
-                         (message.name.empty() || message.name.find_first_not_of(' ') != std::string::npos);
-    return message.track_id > 0 && is_name ? std::nullopt : std::optional(kOrderName);
+    return message.track_id > 0 && (message.name.empty() || IsName(message.name)) ? std::nullopt : std::optional(kOrderName);
   }
   if (message.kind != order_t::KIND_SETTINGS || message.mode < order_t::MODE_OPEN_WATER || message.mode > order_t::MODE_HARBOUR) return kOrderKind;
   const auto is_bad = [](float value) { return std::isinf(value); };

@@ -169,8 +169,11 @@ void Service::Use(const GatheredScan& scan) {
       memory_->kept_names.Keep(before->time, before->datum, before->names, before->tracks);
     }
   } else if (scan.is_anew && memory_->picture != nullptr) {
-    Keep();
+    Keep(label_->datum, Eigen::Vector2d::Zero());
     memory_->tracker.Reset();
+    memory_->look_out.ForgetTracks();
+  } else if (memory_->tracker.BeginsAnewWith(scan.input) && memory_->picture != nullptr) {
+    KeepBesideBoat(scan.input);
     memory_->look_out.ForgetTracks();
   }
   auto& look_out = memory_->look_out;
@@ -179,6 +182,7 @@ void Service::Use(const GatheredScan& scan) {
   const bool is_whole = input.flags == 0;
   watch_.NoteScan(input.time, is_whole);
   is_placed_ = input.own.has_value();
+  if (input.own) memory_->own = input.own;
 
   const auto orders = TakeOrders(input);
   memory_->tracker.SetEncounter({look_out.Begin(input.own).cpa_limit_m, params_.tracker.encounter.look_ahead_s});
@@ -203,10 +207,22 @@ void Service::Use(const GatheredScan& scan) {
 }
 
 // Before all tracks are forgotten.
-void Service::Keep() {
+// @param shift_m  by which everything lies elsewhere on the map of the datum
+void Service::Keep(const Datum& datum, const Eigen::Vector2d& shift_m) {
   const auto& look_out = memory_->look_out;
-  memory_->kept.Keep(label_->end_time, label_->datum, look_out.alerts(), memory_->picture->tracks);
-  memory_->kept_names.Keep(label_->end_time, label_->datum, look_out.names().All(), memory_->picture->tracks);
+  auto tracks = memory_->picture->tracks;
+  for (auto& track : tracks) track.position_m += shift_m;
+  memory_->kept.Keep(label_->end_time, datum, look_out.alerts(), tracks);
+  memory_->kept_names.Keep(label_->end_time, datum, look_out.names().All(), tracks);
+}
+
+// The own position jumped, or the map has another datum: things lie from the boat as they did.
+void Service::KeepBesideBoat(const ScanInput& input) {
+  const auto& own = memory_->own;
+  if (!own || !input.own) return;
+  Eigen::Vector2d shift_m = (input.own->position_map_m - own->position_map_m).head<2>();
+  if (own->velocity_map_mps.allFinite()) shift_m -= ToSeconds(input.own->time - own->time) * own->velocity_map_mps;
+  Keep(input.datum, shift_m);
 }
 
 void Service::Begin(const ScanKey& begin) {
@@ -328,6 +344,8 @@ HealthReport Service::Report() const {
   report.counters.push_back({"alerts", num_alerts_});
   report.counters.push_back({"names_of_no_track", memory_ ? memory_->look_out.num_names_of_no_track() : 0});
   report.counters.push_back({"names_over_limit", memory_ ? memory_->look_out.names().num_over_limit() : 0});
+  report.counters.push_back({"names_merged", memory_ ? memory_->look_out.names().num_merged() : 0});
+  report.counters.push_back({"names_beside", memory_ ? memory_->look_out.names().num_beside() : 0});
   report.counters.push_back({"newcomers_over_limit", memory_ ? memory_->look_out.num_newcomers_over_limit() : 0});
   for (const auto& counter : gatherer_.counters()) report.counters.push_back(counter);
   auto counts = counts_;

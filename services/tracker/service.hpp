@@ -67,6 +67,7 @@ class Service {
     KeptAcknowledgements kept;
     KeptNames kept_names;
     const Picture* picture = nullptr;  // of the last scan: the tracker's own
+    std::optional<Pose> own;           // when it was known last
     ScanKey begin;
   };
 
@@ -83,7 +84,8 @@ class Service {
 
   void Use(const std::vector<GatheredScan>& scans);
   void Use(const GatheredScan& scan);
-  void Keep();
+  void Keep(const Datum& datum, const Eigen::Vector2d& shift_m);
+  void KeepBesideBoat(const ScanInput& input);
   bool FollowScript(const ScanKey& key);
   void Begin(const ScanKey& begin);
   std::vector<Acknowledgement> TakeAcknowledgements(const ScanInput& input, const Picture& picture);

@@ -126,7 +126,6 @@ class Reader {
   std::string fault_;
 };
 
-constexpr std::size_t kMaxNameBytes = 40;  // order_t
 constexpr std::int64_t kMaxTrackId = std::int64_t{1} << 53;
 
 Order ReadOrder(Reader& reader) {
@@ -137,8 +136,7 @@ Order ReadOrder(Reader& reader) {
     order.kind = Order::Kind::kName;
     order.track_id = reader.Whole("track_id", 1, kMaxTrackId);
     order.name = reader.Text("name");
-    const bool is_blank = !order.name.empty() && order.name.find_first_not_of(' ') == std::string::npos;
-    if (is_blank || order.name.size() > kMaxNameBytes || !IsPrintableLine(order.name)) reader.Fail("this is no name");
+    if (!order.name.empty() && !IsName(order.name)) reader.Fail("this is no name");
     return order;
   }
   if (kind != "settings") reader.Fail("its kind is not known");

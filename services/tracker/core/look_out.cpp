@@ -8,11 +8,6 @@ namespace lookout::tracker {
 
 namespace {
 
-bool IsStructure(const Picture& picture, std::int64_t track_id) {
-  const auto track = std::ranges::find(picture.tracks, track_id, &Track::id);
-  return track != picture.tracks.end() && track->kind == TrackKind::kStructure;
-}
-
 double SpeedOf(const std::optional<Pose>& own) { return own && own->velocity_map_mps.allFinite() ? own->velocity_map_mps.norm() : kNan; }
 
 }  // namespace
@@ -48,11 +43,8 @@ void LookOut::Rename(const Picture& picture, Utime time) {
   proof_.Update(picture.tracks);
   if (picture.is_waterline_told) shore_m_ = picture.waterline_m;
   things_.Update(time, picture.tracks, shore_m_);
-  for (const auto& [from, to] : things_.merged()) {
-    alerts_.Rename(from, to, time);
-    // What lies at a quay keeps its own.
-    if (to != kLandTrack && !names_.Of(from).empty() && IsStructure(picture, from)) names_.Rename(from, to);
-  }
+  for (const auto& [from, to] : things_.merged()) alerts_.Rename(from, to, time);
+  names_.Follow(picture.tracks, things_);
   Name(picture, time);
 }
 
@@ -61,10 +53,9 @@ void LookOut::Name(const Picture& picture, Utime time) {
     const auto id = naming.track_id;
     if (std::ranges::find(picture.tracks, id, &Track::id) == picture.tracks.end()) {
       ++num_names_of_no_track_;
-      continue;
+    } else {
+      names_.Give(id, naming.name, time);
     }
-    const auto thing = things_.ThingOf(id);
-    names_.Give(IsStructure(picture, id) && thing != kLandTrack ? thing : id, naming.name, time);
   }
 }
 
@@ -78,7 +69,7 @@ const std::vector<Alert>& LookOut::Update(Utime time, bool is_whole, const Pictu
   told_ = alerts_.Update(time, is_whole, dangers, {own, std::span(picture.tracks)});
   for (const auto& [from, to] : alerts_.adopted()) names_.Rename(from, to);
   names_.Update(time, picture.tracks, told_);
-  for (auto& alert : told_) alert.name = names_.Of(alert.nearest_track, alert.thing);
+  for (auto& alert : told_) alert.name = names_.Of(alert);
   sounding_ = sound_.Update(time, told_);
   return told_;
 }

@@ -17,38 +17,58 @@
 #include "services/tracker/core/kept_acknowledgements.hpp"
 #include "services/tracker/core/order.hpp"
 #include "services/tracker/core/picture.hpp"
+#include "services/tracker/core/things.hpp"
 
 namespace lookout::tracker {
 
-/// A name is of a track; that of a structure is of all its pieces (Things). It lives as long as the track, or an alert of it, and for kKeptFor after,
-/// since what is found again then is the same.
+/// A name is of the track that people gave it to, and stays with it. That of a piece of a structure is told of all of the structure that has no name
+/// of its own (Things): of several the one that was given last. Where the piece ends its name passes to another piece of the same structure. A name
+/// lives as long as its track, or an alert of it, and for kKeptFor after, since what is found again then is the same.
 class Names {
  public:
   static constexpr std::size_t kMost = 100;
   static constexpr std::chrono::seconds kKeptFor{10};
 
-  /// An empty name takes the one away that was given. Of too many it is dropped, and counted.
-  /// @param id  a track or a thing
-  void Give(std::int64_t id, const std::string& name, Utime time);
+  /// An empty name takes the one away that was given, of a piece without its own that of its structure. Of too many it is dropped, and counted.
+  void Give(std::int64_t track_id, const std::string& name, Utime time);
+  /// The one became the other. Where both have a name the one that was given last stays, and the other is counted.
   void Rename(std::int64_t from, std::int64_t to);
   void Clear() { names_.clear(); }
 
-  /// One scan: forgets those of what is gone.
+  /// One scan, before names are given: which things the tracks with names are of. Call Things::Update of that scan before.
+  void Follow(std::span<const Track> tracks, const Things& things);
+  /// One scan, at its end: forgets those of what is gone.
   void Update(Utime time, std::span<const Track> tracks, std::span<const Alert> alerts);
 
-  /// Of the first that has one; "": none has.
-  std::string Of(std::int64_t id, std::int64_t or_else = kUnnamed) const;
-  /// By id.
+  /// That was given to it; "": none.
+  std::string Of(std::int64_t track_id) const;
+  /// Of an alert: of its nearest track, else of the structure that it is of, else, where the track is not seen any more, of the thing.
+  std::string Of(const Alert& alert) const;
+  /// By id of the track.
   std::vector<std::pair<std::int64_t, std::string>> All() const;
   std::int64_t num_over_limit() const { return num_over_limit_; }
+  /// Given to what became one with something that had a later name.
+  std::int64_t num_merged() const { return num_merged_; }
+  /// Now: of structures that are told by a later name of another piece.
+  std::int64_t num_beside() const;
 
  private:
   struct Given {
     std::string name;
-    Utime borne;  // last
+    std::int64_t order = 0;  // in which they were given
+    Utime borne;             // last
+    bool is_structure = false;
+    std::int64_t thing = kUnnamed;  // that its track is of
   };
-  std::map<std::int64_t, Given> names_;
+  using Item = std::pair<const std::int64_t, Given>;
+  const Item* FindOfStructure(std::int64_t thing) const;
+  void PassOn(std::span<const Track> tracks, const Things& things);
+
+  std::map<std::int64_t, Given> names_;              // by track
+  std::map<std::int64_t, std::int64_t> structures_;  // tracks that are a piece of one, now, and the thing
+  std::int64_t num_given_ = 0;
   std::int64_t num_over_limit_ = 0;
+  std::int64_t num_merged_ = 0;
 };
 
 /// When lidar, navigator or the process begin anew tracks get other ids: the name passes to the track that stands where the old one would be by now,

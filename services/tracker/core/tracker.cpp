@@ -71,6 +71,8 @@ void Tracker::Reset() {
   memory_->own_m2 = 0.0;
 }
 
+bool Tracker::BeginsAnewWith(const ScanInput& scan) const { return memory_->WhyAnew(scan) != nullptr; }
+
 const Picture& Tracker::Update(const ScanInput& scan) {
   Memory& memory = *memory_;
   if (auto* const restarts = memory.WhyAnew(scan)) {

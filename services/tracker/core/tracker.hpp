@@ -35,6 +35,8 @@ class Tracker {
   /// position that its speed does not explain, begins anew; each has its counter.
   /// Cost and memory: README.md.
   const Picture& Update(const ScanInput& scan);
+  /// Whether Update with this scan will begin anew.
+  bool BeginsAnewWith(const ScanInput& scan) const;
   /// From the next scan on.
   void SetEncounter(const EncounterParams& encounter);
   /// Start mark: everything is forgotten but the next id.

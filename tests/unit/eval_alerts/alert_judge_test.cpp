@@ -275,6 +275,54 @@ TEST(AlertVerdicts, OfOneShoreASecondAlertIsNewsOnlyMuchNearerOrOnAnotherSide) {
   EXPECT_EQ(verdicts_after(OfNoTrack(2, true, 8.1, 80.0)).Num(AlertVerdict::kRepeated), 0);    // another side
 }
 
+AlertFault TheFault(const AlertThing& thing, const Vector2d& told_mps, double told_side_m, double east_m = 0.0) {
+  Situation run;
+  auto alert = Approach(1, {east_m, 30.0});
+  alert.track->outline_m = SquareAt({east_m, 30.0}, told_side_m);
+  alert.track->velocity_mps = told_mps;
+  run.Scan({thing}, {alert});
+  return run.Scores().events.front().fault;
+}
+
+TEST(AlertFaults, TellWhatWasBelievedAgainstTheTruth) {
+  const auto quay = Land(1, {30.0, 30.0}, 40.0);  // passes 9 m off
+  const auto moored = Thing(1, {20.0, 30.0}), passing = Thing(1, {20.0, 30.0}, {2.0, 0.0});
+  EXPECT_EQ(TheFault(quay, {-2.0, 0.0}, 2.0, 12.0), AlertFault::kPieceMoves);
+  EXPECT_EQ(TheFault(moored, {-2.0, 0.0}, 2.0, 20.0), AlertFault::kStandingMoves);
+  EXPECT_EQ(TheFault(passing, {0.0, 0.0}, 2.0, 20.0), AlertFault::kOtherCourse);
+  EXPECT_EQ(TheFault(passing, {1.9, 0.0}, 2.0, 20.0), AlertFault::kTooNear);
+  EXPECT_EQ(TheFault(moored, {0.0, 0.0}, 2.0), AlertFault::kNothingThere);
+  EXPECT_EQ(TheFault(Thing(1, {0.0, 30.0}), {0.0, 0.0}, 2.0), AlertFault::kNone) << "right";
+}
+
+TEST(AlertFaults, OfWhatIsRepeatedTellWhetherTheOtherAlertHolds) {
+  for (const bool holds : {true, false}) {
+    Situation run;
+    const auto thing = Thing(1, {0.0, 30.0});
+    run.Scans(10, {thing}, {Approach(1, {0.0, 30.0})});
+    if (!holds) run.Scans(20, {thing}, {});
+    std::vector<JudgedAlert> alerts{Approach(2, {0.5, 30.0})};
+    if (holds) alerts.push_back(Approach(1, {0.0, 30.0}));
+    run.Scan({thing}, alerts);
+    const auto scores = run.Scores();
+    EXPECT_EQ(scores.Num(AlertVerdict::kRepeated, AlertFault::kTwoTracks), holds ? 1 : 0);
+    EXPECT_EQ(scores.Num(AlertVerdict::kRepeated, AlertFault::kToldAgain), holds ? 0 : 1);
+  }
+}
+
+TEST(AlertSound, IsWhatAlertsLetRing) {
+  Situation run;
+  auto alert = Approach(1, {0.0, 30.0});
+  alert.is_warning = alert.sounds = true;
+  run.Scans(11, {Thing(1, {0.0, 30.0})}, {alert});
+  alert.sounds = false;
+  run.Scans(10, {Thing(1, {0.0, 30.0})}, {alert});
+  const auto scores = run.Scores();
+  EXPECT_NEAR(scores.sounding_s, 1.0, 1e-6);
+  EXPECT_NEAR(scores.warning_sounding_s, 1.0, 1e-6);
+  EXPECT_NEAR(scores.sound_s, 2.0, 1e-6);
+}
+
 TEST(AlertLevels, AreTheGraverThatTheAlertHad) {
   Situation run;
   const auto thing = Thing(1, {0.0, 30.0});

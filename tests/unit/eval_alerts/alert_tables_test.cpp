@@ -48,6 +48,20 @@ TEST(AlertTables, WhatIsMissedHasNoDelay) {
   EXPECT_EQ(TableOf(tables, "alerts_dangers").rows()[1], (Table::Row{"a", "1", "0", "0", "1", "never", "never"}));
 }
 
+TEST(AlertTables, CausesAreSharesOfTheFalseAndOfTheRepeated) {
+  auto row = RowOf("quay", 1.0, 0, 3, 0.5);
+  row.scores.num_alerts[0][static_cast<std::size_t>(AlertVerdict::kRepeated)] = 2;
+  auto& far = row.scores.num_faults[static_cast<std::size_t>(AlertVerdict::kFar)];
+  far[static_cast<std::size_t>(AlertFault::kOtherCourse)] = 1;
+  far[static_cast<std::size_t>(AlertFault::kPieceMoves)] = 2;
+  row.scores.num_faults[static_cast<std::size_t>(AlertVerdict::kRepeated)][static_cast<std::size_t>(AlertFault::kPieceMoves)] = 1;
+  const auto tables = AlertTablesOf({{"own scenes", {RowOf("a", 1.0, 0, 0, 0.5), row}, "all scenes"}});
+  const auto& causes = TableOf(tables, "alerts_causes");
+  ASSERT_EQ(causes.rows().size(), 3U);
+  EXPECT_EQ(causes.rows()[1], (Table::Row{"own scenes", "piece moves", "2", "0", "1", "67", "50", "quay"}));
+  EXPECT_EQ(causes.rows()[2], (Table::Row{"own scenes", "other course", "1", "0", "0", "33", "0", "quay"}));
+}
+
 // ALERTS.md has a block of each.
 TEST(AlertTables, AreFiguresOfPages) {
   for (const auto& table : AlertTablesOf({})) {
@@ -70,11 +84,15 @@ TEST(AlertTables, AnEventIsARowOfTheList) {
   event.approach_m = std::numeric_limits<double>::infinity();
   event.told_distance_m = 9.5;
   event.told_bearing_rad = DegToRad(350.0);
+  event.fault = AlertFault::kPieceMoves;
+  event.true_speed_mps = 0.0;
+  event.told_speed_mps = 1.25;
   event.text = "boat 17 in the guard zone: 9.5 m, 10 deg to port";
   EXPECT_EQ(AlertEventRow("marina", 101, event),
-            "marina,101,12.3,far,warning,zone,3,17,boat_1,boat,14.00,inf,9.50,350,,\"boat 17 in the guard zone: 9.5 m, 10 deg to port\"\n");
+            "marina,101,12.3,far,warning,zone,3,17,boat_1,boat,14.00,inf,9.50,350,,piece moves,0.0,1.2,\"boat 17 in the guard zone: 9.5 m, 10 deg to "
+            "port\"\n");
   const auto header = AlertEventHeader();
-  EXPECT_EQ(std::ranges::count(header, ','), 15);
+  EXPECT_EQ(std::ranges::count(header, ','), 18);
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ TEST(OrderChecks, TakeNamesOfOneLine) {
     message.name = good;
     EXPECT_EQ(FaultOf(message), std::nullopt) << good;
   }
-  for (const auto* bad : {"  ", "two\nlines", "bell\x07", "\xC3", "\xC2\x85", "\xE2\x80\xAE turned", "del\x7F"}) {
+  for (const auto* bad : {"  ", "two\nlines", "bell\x07", "\xC3", "\xC2\x85", "\xE2\x80\xAE turned", "del\x7F", "\xE2\x80\x8B"}) {
     message.name = bad;
     EXPECT_EQ(FaultOf(message), kOrderName) << bad;
   }

@@ -138,7 +138,8 @@ TEST(Order, IsSilenceOrLimitsWithinBounds) {
         R"({"kind":"settings","mode":"harbour","cpa_limit_m":-1})", R"({"kind":"settings","mode":"harbour","cpa_limit_m":"3"})",
         R"({"kind":"settings","mode":"harbour","cpa_limit_m":1e300})", R"({"kind":"settings","mode":"harbour","guard_zone_from_deg":361})",
         R"({"kind":"name","track_id":0,"name":"a"})", R"({"kind":"name","track_id":7})", R"({"kind":"name","track_id":7,"name":" "})",
-        R"({"kind":"name","track_id":7,"name":"a\nb"})", R"({"kind":"name","track_id":7,"name":"01234567890123456789012345678901234567890"})"})
+        R"({"kind":"name","track_id":7,"name":"a\nb"})", R"({"kind":"name","track_id":7,"name":"\u200b"})",
+        R"({"kind":"name","track_id":7,"name":"01234567890123456789012345678901234567890"})"})
     EXPECT_FALSE(ParseOrder(text)) << text;
 }
 

@@ -50,6 +50,8 @@ class LiveRun : public ::testing::Test {
   fs::path config_ = replay_config_;  // of the live run
   std::unique_ptr<Process> process_;
   std::optional<alert_t> active_;  // in the latest ALERTS
+  double moved_m_ = 0.0;           // north, all of the map
+  double moved_deg_ = 0.0;         // its datum
 
   // The scans of these tests look into hardly any of it, of which ALERTS would tell.
   fs::path WithoutGuardZone() const {
@@ -101,7 +103,8 @@ class LiveRun : public ::testing::Test {
     const auto offset_us = test::kScanUs * number;
     for (auto pose_us = offset_us; pose_us < offset_us + test::kScanUs; pose_us += 20'000) {
       auto pose = test::MakePose(pose_us, pose_us / 20'000);
-      pose.position_map_m[1] = 3e-6 * static_cast<double>(pose_us);
+      pose.position_map_m[1] = 3e-6 * static_cast<double>(pose_us) + moved_m_;
+      pose.datum_latitude_deg += moved_deg_;
       pose.velocity_map_mps[1] = 3.0;
       Send(bus::kPose, pose);
     }
@@ -112,7 +115,9 @@ class LiveRun : public ::testing::Test {
   }
   void SendObstacles(int number, std::int64_t seq) {
     const auto offset_us = test::kScanUs * number;
-    Send(bus::kObstacles, test::MakeObstacles(offset_us, seq, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {0.0, 60.0})}));
+    auto message = test::MakeObstacles(offset_us, seq, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {0.0, 60.0 + moved_m_})});
+    message.datum_latitude_deg += moved_deg_;
+    Send(bus::kObstacles, message);
   }
   // Sails on until the alert of the thing ahead is a warning, and acknowledges it.
   // @return the number of the next scan; 0: there was none
@@ -258,6 +263,31 @@ TEST_F(LiveRun, KeepsNamesOverARestartAndInAReplay) {
   ASSERT_EQ(LastAlerts().num_alerts, 1);
   EXPECT_EQ(LastAlerts().alerts[0].name, order.name);
   EXPECT_EQ(LastAlerts().alerts[0].text.find(order.name), 0U);
+  ExpectReplayEqualsLive();
+}
+
+// The navigator finds that it was wrong by 40 m; then its map gets another datum.
+TEST_F(LiveRun, KeepsNamesWhereThePositionJumpsOrTheDatumChanges) {
+  Start();
+  for (int i = 0; i < 20; ++i) SendScan(i);
+  order_t order{};
+  order.source = "page";
+  order.kind = order_t::KIND_NAME;
+  order.name = "Anna's mooring buoy";
+  order.track_id = bus::Decode<tracks_t>(live_.at("TRACKS").back()).value().tracks.back().id;
+  Deliver(bus::kOrders, order);
+  for (int i = 20; i < 30; ++i) SendScan(i);
+  ASSERT_EQ(LastAlerts().named_track_id, std::vector{order.track_id});
+  moved_m_ = 40.0;
+  for (int i = 30; i < 60; ++i) SendScan(i);
+  ASSERT_EQ(LastAlerts().given_name, std::vector{order.name});
+  const auto after_jump = LastAlerts().named_track_id;
+  EXPECT_NE(after_jump, std::vector{order.track_id});
+  moved_m_ = -100.0;
+  moved_deg_ = 0.001;
+  for (int i = 60; i < 90; ++i) SendScan(i);
+  EXPECT_EQ(LastAlerts().given_name, std::vector{order.name});
+  EXPECT_NE(LastAlerts().named_track_id, after_jump);
   ExpectReplayEqualsLive();
 }
 

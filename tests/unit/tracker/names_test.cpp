@@ -95,15 +95,62 @@ TEST_F(NamesOfThings, StandInTheirAlertsAsLongAsTheyLive) {
   EXPECT_TRUE(look_out_.names().All().empty()) << "it is gone";
 }
 
-TEST_F(NamesOfThings, OfAStructureAreOfAllItsPieces) {
-  const std::vector<Track> pieces{TrackAt(3, 0.0, TrackKind::kStructure), TrackAt(5, 3.0, TrackKind::kStructure), TrackAt(6, 5.0)};
+TEST_F(NamesOfThings, OfAStructureAreToldOfAllItsPieces) {
+  std::vector<Track> pieces{TrackAt(3, 0.0, TrackKind::kStructure), TrackAt(5, 3.0, TrackKind::kStructure), TrackAt(6, 5.0)};
+  pieces[0].approach.cpa_m = 0.5;  // the nearest
+  pieces[0].approach.tcpa_s = 15.0;
   Scans(10, pieces);
   Order(5, "Kiosk pier");
   Order(6, "Anna's boat");
   Scans(1, pieces);
-  EXPECT_EQ(look_out_.names().Of(3), "Kiosk pier");
-  EXPECT_EQ(look_out_.names().Of(5), "");
+  EXPECT_EQ(look_out_.names().Of(3), "");
+  EXPECT_EQ(look_out_.names().Of(5), "Kiosk pier") << "the track that was named";
   EXPECT_EQ(look_out_.names().Of(6), "Anna's boat");
+  EXPECT_EQ(look_out_.alerts().front().nearest_track, 3);
+  EXPECT_EQ(AlertName(), "Kiosk pier");
+}
+
+// The structure is called by its boat, which has the lowest id, and the boat leaves.
+TEST_F(NamesOfThings, OfAPierStayWhereABoatCastsOff) {
+  std::vector<Track> pieces{TrackAt(2, 0.0), TrackAt(5, 3.0, TrackKind::kStructure), TrackAt(6, 6.0, TrackKind::kStructure)};
+  Scans(10, pieces);
+  Order(5, "Kiosk pier");
+  Scans(5, pieces);
+  pieces[0].velocity_mps = {-1.0, 0.0};
+  Scans(5, pieces);
+  EXPECT_EQ(look_out_.names().Of(2), "");
+  EXPECT_EQ(look_out_.names().Of(5), "Kiosk pier");
+  for (const auto& alert : look_out_.alerts()) EXPECT_EQ(alert.name, alert.thing == 2 ? "" : "Kiosk pier") << alert.thing;
+}
+
+TEST_F(NamesOfThings, OfOneStructureTheLastThatWasGivenIsTold) {
+  const std::vector<Track> pieces{TrackAt(3, 0.0, TrackKind::kStructure), TrackAt(5, 3.0, TrackKind::kStructure),
+                                  TrackAt(6, 6.0, TrackKind::kStructure)};
+  Scans(10, pieces);
+  Order(6, "North pier");
+  Order(5, "Kiosk pier");
+  Scans(1, pieces);
+  EXPECT_EQ(AlertName(), "Kiosk pier");
+  EXPECT_EQ(look_out_.names().num_beside(), 1);
+  Order(3, "");  // which has none of its own
+  Scans(1, pieces);
+  EXPECT_EQ(AlertName(), "North pier");
+  EXPECT_EQ(look_out_.names().num_beside(), 0);
+  // The named piece is gone; another of the pier goes on with the name.
+  Scans(1, {pieces[0], pieces[1]});
+  EXPECT_EQ(look_out_.names().Of(3), "North pier");
+  EXPECT_EQ(AlertName(), "North pier");
+}
+
+TEST_F(NamesOfThings, OfTwoThatBecomeOneTheLaterStays) {
+  Scans(10, {TrackAt(7, 0.0), TrackAt(8, 10.0)});
+  Order(7, "Anna's boat");
+  Order(8, "Berta");
+  Scans(1, {TrackAt(7, 0.0), TrackAt(8, 10.0)});
+  picture_.merged = {{8, 7}};
+  Scans(1, {TrackAt(7, 0.0)});
+  EXPECT_EQ(look_out_.names().Of(7), "Berta");
+  EXPECT_EQ(look_out_.names().num_merged(), 1);
 }
 
 TEST(Names, AreBounded) {
@@ -113,7 +160,6 @@ TEST(Names, AreBounded) {
   EXPECT_EQ(names.All().size(), Names::kMost);
   EXPECT_EQ(names.num_over_limit(), 5);
   EXPECT_EQ(names.Of(1), "other");
-  EXPECT_EQ(names.Of(200, 2), "buoy");
 }
 
 TEST(KeptNames, PassToTheTrackThatStandsWhereItWouldBe) {
