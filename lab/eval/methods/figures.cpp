@@ -25,7 +25,7 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 27> kFigureNames{"main",
+constexpr std::array<std::string_view, 28> kFigureNames{"main",
                                                         "times",
                                                         "miou",
                                                         "false",
@@ -49,6 +49,7 @@ constexpr std::array<std::string_view, 27> kFigureNames{"main",
                                                         "alerts_targets",
                                                         "alerts_verdicts",
                                                         "alerts_levels",
+                                                        "alerts_causes",
                                                         "alerts_dangers",
                                                         "alerts_standing",
                                                         "alerts_left_out"};

@@ -28,6 +28,11 @@ constexpr double kInsideM = 1e-6;
 constexpr double kMostStepS = 1.0;
 // So much later than the look-ahead an alert is still about what will be.
 constexpr double kLenientS = 3.0;
+// Of the causes of false alerts: what swings at its mooring stands; a piece is less than so much of its thing; a course is another by more than that.
+constexpr double kStandsForAlertsMps = 0.3;
+constexpr double kPieceShare = 0.6;
+constexpr double kSameVelocityMps = 0.5;
+constexpr double kSameVelocityShare = 0.3;
 
 double SecondsOf(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
 
@@ -164,6 +169,30 @@ bool AlertJudge::IsRepeated(const JudgedAlert& alert, const AlertThing& thing, s
   return is_told && !is_news;
 }
 
+// What the look-out believed of the thing that made it speak.
+AlertFault AlertJudge::FaultOf(const JudgedAlert& alert, const Evaluated* found, AlertVerdict verdict) const {
+  if (verdict == AlertVerdict::kRight || verdict == AlertVerdict::kBorder) return AlertFault::kNone;
+  if (found == nullptr) return AlertFault::kNothingThere;
+  const auto& thing = *found->thing;
+  if (alert.track) {
+    const Vector2d true_mps = thing.motion.velocity_mps;
+    const Vector2d told_mps = alert.track->velocity_mps;
+    const bool is_moved = !told_mps.isZero(0.0);
+    if (is_moved && true_mps.norm() < kStandsForAlertsMps) {
+      const double true_m = thing.outline_m->box_m().diagonal().norm();
+      Eigen::AlignedBox2d told_box_m;
+      for (const auto& corner_m : alert.track->outline_m) told_box_m.extend(corner_m);
+      const double told_m = told_box_m.isEmpty() ? 0.0 : told_box_m.diagonal().norm();
+      return told_m < kPieceShare * true_m ? AlertFault::kPieceMoves : AlertFault::kStandingMoves;
+    }
+    if ((told_mps - true_mps).norm() > std::max(kSameVelocityMps, kSameVelocityShare * true_mps.norm())) return AlertFault::kOtherCourse;
+  }
+  if (verdict == AlertVerdict::kFar) return AlertFault::kTooNear;
+  const bool is_told_now = std::ranges::any_of(
+      told_, [&](const Told& told) { return told.group == thing.group && told.alert_id != alert.id && newest_us_ - told.last_us <= kLooksUs; });
+  return is_told_now ? AlertFault::kTwoTracks : AlertFault::kToldAgain;
+}
+
 AlertEvent AlertJudge::EventOf(const AlertScan& scan, const JudgedAlert& alert, const Evaluated* found, AlertVerdict verdict) const {
   AlertEvent event;
   event.second = SecondsOf(scan.utime_us - *first_us_);
@@ -174,11 +203,14 @@ AlertEvent AlertJudge::EventOf(const AlertScan& scan, const JudgedAlert& alert, 
   event.told_distance_m = alert.distance_m;
   event.told_bearing_rad = alert.bearing_rad;
   event.text = alert.text;
+  event.fault = FaultOf(alert, found, verdict);
+  if (alert.track) event.told_speed_mps = alert.track->velocity_mps.norm();
   if (found == nullptr) return event;
   event.thing = found->thing->name;
   event.kind = found->thing->kind;
   event.distance_m = found->thing->outline_m->Gap(scan.own.hull_m);
   event.approach_m = found->look.approach.least_m;
+  event.true_speed_mps = found->thing->motion.velocity_mps.norm();
   return event;
 }
 
@@ -262,12 +294,16 @@ void AlertJudge::CountStanding(const AlertScan& scan, double passed_s) {
   std::int64_t num_warnings = 0;
   bool sounds = false;
   bool warns = false;
+  bool rings = false;
+  bool rings_for_warning = false;
   for (const auto& alert : scan.alerts) {
     if (!alert.holds) continue;
     ++num_standing;
     if (alert.is_warning) ++num_warnings;
     sounds = sounds || alert.is_open;
     warns = warns || (alert.is_open && alert.is_warning);
+    rings = rings || alert.sounds;
+    rings_for_warning = rings_for_warning || (alert.sounds && alert.is_warning);
   }
   scores_.standing.Add(static_cast<double>(num_standing));
   scores_.standing_warnings.Add(static_cast<double>(num_warnings));
@@ -275,6 +311,8 @@ void AlertJudge::CountStanding(const AlertScan& scan, double passed_s) {
   scores_.has_warning.Add(num_warnings > 0 ? 1.0 : 0.0);
   if (sounds) scores_.sound_s += passed_s;
   if (warns) scores_.warning_sound_s += passed_s;
+  if (rings) scores_.sounding_s += passed_s;
+  if (rings_for_warning) scores_.warning_sounding_s += passed_s;
 }
 
 void AlertJudge::FollowDangers(const AlertScan& scan) {
@@ -326,6 +364,9 @@ void AlertJudge::FollowDanger(const AlertScan& scan, const Evaluated& one, Watch
 
 void AlertJudge::CloseEpisode(Episode episode) {
   ++scores_.num_alerts.at(episode.is_warning ? 1 : 0).at(static_cast<std::size_t>(episode.verdict));
+  if (episode.event.fault != AlertFault::kNone) {
+    ++scores_.num_faults.at(static_cast<std::size_t>(episode.verdict)).at(static_cast<std::size_t>(episode.event.fault));
+  }
   const bool is_false = episode.verdict == AlertVerdict::kFar || episode.verdict == AlertVerdict::kNothing;
   if (is_false && episode.is_in_berth) ++scores_.num_false_in_berth;
   episode.event.level = episode.is_warning ? "warning" : "caution";

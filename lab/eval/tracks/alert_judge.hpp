@@ -109,6 +109,7 @@ class AlertJudge {
   const Evaluated* FindThing(const AlertScan& scan, const JudgedAlert& alert) const;
   AlertVerdict VerdictOf(const AlertScan& scan, const JudgedAlert& alert, const Evaluated* found) const;
   bool IsRepeated(const JudgedAlert& alert, const AlertThing& thing, std::int64_t now_us) const;
+  AlertFault FaultOf(const JudgedAlert& alert, const Evaluated* found, AlertVerdict verdict) const;
   AlertEvent EventOf(const AlertScan& scan, const JudgedAlert& alert, const Evaluated* found, AlertVerdict verdict) const;
   void Raise(const AlertScan& scan, const JudgedAlert& alert, const Evaluated* found);
   void Tell(const AlertScan& scan, const JudgedAlert& alert, const Evaluated* found);

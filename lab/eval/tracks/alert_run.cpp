@@ -52,6 +52,7 @@ bool AlertRun::OnTracks(const tracks_t& message) {
   for (const auto& track : message.tracks) {
     auto& place = place_of_[track.id];
     place.position_m = {track.position_map_m[0], track.position_map_m[1]};
+    place.velocity_mps = {track.velocity_map_mps[0], track.velocity_map_mps[1]};
     place.outline_m.clear();
     for (std::size_t i = 0; i < track.outline_east_m.size(); ++i) {
       place.outline_m.emplace_back(static_cast<double>(track.outline_east_m[i]), static_cast<double>(track.outline_north_m[i]));
@@ -71,6 +72,7 @@ bool AlertRun::OnAlerts(const alerts_t& message) {
       continue;
     }
     auto judged = ToJudgedAlert(alert);
+    judged.sounds = judged.holds && alert.id == message.sounding_alert_id;
     if (!scan) {
       if (judged.holds) early_alerts_.insert(alert.id);
       continue;

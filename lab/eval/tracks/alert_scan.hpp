@@ -15,7 +15,8 @@ namespace lookout::eval {
 /// What an alert names by its track.
 struct AlertTrackPlace {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
-  Polygon outline_m;  // empty: the position alone is known
+  Polygon outline_m;                                       // empty: the position alone is known
+  Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();  // as TRACKS have it: 0 of what stands
 };
 
 /// One alert of one message, as much of it as is judged: ToJudgedAlert makes it.
@@ -26,6 +27,7 @@ struct JudgedAlert {
   bool is_warning = false;               // else a caution
   bool holds = false;                    // active or acknowledged: not over
   bool is_open = false;                  // holds, and nobody has acknowledged it
+  bool sounds = false;                   // it is the one that ALERTS let sound
   std::int64_t track_id = 0;             // 0 = of none: land, or what has none
   std::optional<AlertTrackPlace> track;  // where TRACKS had it last; nullopt: they never did
   double distance_m = 0.0;               // told: from the own hull, of a zone from the reference point

@@ -9,9 +9,10 @@ namespace {
 
 // All but the events and the greatest count.
 auto AdditiveOfAlerts(auto& scores) {
-  return std::tie(scores.num_runs, scores.num_scans, scores.seconds, scores.num_alerts, scores.num_dangers, scores.berth_s, scores.num_false_in_berth,
-                  scores.delay_s, scores.standing, scores.standing_warnings, scores.has_warning, scores.sound_s, scores.warning_sound_s,
-                  scores.num_watch_alerts, scores.num_early_alerts, scores.num_open_dangers, scores.num_turning_dangers, scores.run_in_s);
+  return std::tie(scores.num_runs, scores.num_scans, scores.seconds, scores.num_alerts, scores.num_faults, scores.num_dangers, scores.berth_s,
+                  scores.num_false_in_berth, scores.delay_s, scores.standing, scores.standing_warnings, scores.has_warning, scores.sound_s,
+                  scores.warning_sound_s, scores.sounding_s, scores.warning_sounding_s, scores.num_watch_alerts, scores.num_early_alerts,
+                  scores.num_open_dangers, scores.num_turning_dangers, scores.run_in_s);
 }
 
 }  // namespace
@@ -19,6 +20,12 @@ auto AdditiveOfAlerts(auto& scores) {
 std::string_view NameOf(AlertVerdict verdict) {
   constexpr std::array<std::string_view, kNumAlertVerdicts> kNames{"right", "border", "far", "nothing", "repeated"};
   return kNames[static_cast<std::size_t>(verdict)];
+}
+
+std::string_view NameOf(AlertFault fault) {
+  constexpr std::array<std::string_view, kNumAlertFaults> kNames{"",         "piece moves", "standing moves", "other course", "nothing there",
+                                                                 "too near", "two tracks",  "told again"};
+  return kNames[static_cast<std::size_t>(fault)];
 }
 
 std::string_view NameOf(DangerVerdict verdict) {

@@ -18,6 +18,11 @@ enum class AlertVerdict { kRight, kBorder, kFar, kNothing, kRepeated };
 inline constexpr std::size_t kNumAlertVerdicts = 5;
 std::string_view NameOf(AlertVerdict verdict);
 
+/// Why an alert is far, nothing or repeated: what the look-out believed, held against what is true. ALERTS.md defines each.
+enum class AlertFault { kNone, kPieceMoves, kStandingMoves, kOtherCourse, kNothingThere, kTooNear, kTwoTracks, kToldAgain };
+inline constexpr std::size_t kNumAlertFaults = 8;
+std::string_view NameOf(AlertFault fault);
+
 /// Of a danger.
 enum class DangerVerdict { kInTime, kLate, kMissed };
 inline constexpr std::size_t kNumDangerVerdicts = 3;
@@ -39,6 +44,9 @@ struct AlertEvent {
   double told_distance_m = std::numeric_limits<double>::quiet_NaN();
   double told_bearing_rad = std::numeric_limits<double>::quiet_NaN();
   double delay_s = std::numeric_limits<double>::quiet_NaN();  // of a danger; infinite: missed
+  AlertFault fault = AlertFault::kNone;
+  double true_speed_mps = std::numeric_limits<double>::quiet_NaN();  // over ground
+  double told_speed_mps = std::numeric_limits<double>::quiet_NaN();
   std::string text;
 };
 
@@ -49,6 +57,8 @@ struct AlertScores {
 
   /// By level (caution, warning: the graver that the alert had while it held) and verdict.
   std::array<std::array<std::int64_t, kNumAlertVerdicts>, 2> num_alerts{};
+  /// Those that are far, nothing or repeated.
+  std::array<std::array<std::int64_t, kNumAlertFaults>, kNumAlertVerdicts> num_faults{};
   /// While the own boat stood: how long, and alerts that came up then and are far or nothing.
   double berth_s = 0.0;
   std::int64_t num_false_in_berth = 0;
@@ -61,6 +71,9 @@ struct AlertScores {
   Mean has_warning;              // share of scans
   double sound_s = 0.0;          // some alert holds and is not acknowledged
   double warning_sound_s = 0.0;  // some warning
+  // As ALERTS let it ring: an alert, a warning.
+  double sounding_s = 0.0;
+  double warning_sounding_s = 0.0;
 
   // Left out.
   std::int64_t num_watch_alerts = 0;     // that nobody looks
@@ -73,6 +86,9 @@ struct AlertScores {
 
   std::int64_t Num(AlertVerdict verdict) const;
   std::int64_t Num(AlertVerdict verdict, bool is_warning) const { return num_alerts[is_warning ? 1 : 0][static_cast<std::size_t>(verdict)]; }
+  std::int64_t Num(AlertVerdict verdict, AlertFault fault) const {
+    return num_faults[static_cast<std::size_t>(verdict)][static_cast<std::size_t>(fault)];
+  }
   std::int64_t Num(DangerVerdict verdict) const { return num_dangers[static_cast<std::size_t>(verdict)]; }
   std::int64_t NumAlerts() const;
   std::int64_t NumAlerts(bool is_warning) const;

@@ -58,10 +58,12 @@ NamedTable DangerTable(const std::vector<AlertRow>& rows) {
 }
 
 NamedTable StandingTable(const std::vector<AlertRow>& rows) {
-  Table table({"scene", "standing_mean", "standing_most", "warnings_mean", "scans_with_warning_%", "sound_s_h", "warning_sound_s_h"});
+  Table table({"scene", "standing_mean", "standing_most", "warnings_mean", "scans_with_warning_%", "sound_s_h", "warning_sound_s_h", "sounding_s_h",
+               "warning_sounding_s_h"});
   for (const auto& [scene, scores] : rows) {
     table.Add({scene, Number(scores.standing.value(), 2), Number(scores.most_standing), Number(scores.standing_warnings.value(), 2),
-               Percent(scores.has_warning.value()), Number(PerHour(scores.sound_s, scores), 0), Number(PerHour(scores.warning_sound_s, scores), 0)});
+               Percent(scores.has_warning.value()), Number(PerHour(scores.sound_s, scores), 0), Number(PerHour(scores.warning_sound_s, scores), 0),
+               Number(PerHour(scores.sounding_s, scores), 0), Number(PerHour(scores.warning_sounding_s, scores), 0)});
   }
   return {"alerts_standing", "alerts: how many stand at once, and how long they sound", std::move(table)};
 }
@@ -73,6 +75,33 @@ NamedTable LeftOutTable(const std::vector<AlertRow>& rows) {
                Number(scores.num_turning_dangers), Number(scores.run_in_s, 0)});
   }
   return {"alerts_left_out", "alerts: what is left out, since the truth does not know it", std::move(table)};
+}
+
+// Of each world: why alerts are false or repeated, the most frequent first.
+NamedTable FaultTable(const std::vector<AlertWorld>& worlds) {
+  Table table({"world", "cause", "far", "nothing", "repeated", "of_false_%", "of_repeated_%", "most in"});
+  for (const auto& world : worlds) {
+    AlertScores sum;
+    for (const auto& row : world.scenes) sum.Add(row.scores);
+    const auto num_false = [](const AlertScores& scores, AlertFault fault) {
+      return scores.Num(AlertVerdict::kFar, fault) + scores.Num(AlertVerdict::kNothing, fault);
+    };
+    const auto num_all = [&num_false](const AlertScores& scores, AlertFault fault) {
+      return num_false(scores, fault) + scores.Num(AlertVerdict::kRepeated, fault);
+    };
+    std::vector<AlertFault> faults;
+    for (std::size_t i = 1; i < kNumAlertFaults; ++i) {
+      if (num_all(sum, static_cast<AlertFault>(i)) > 0) faults.push_back(static_cast<AlertFault>(i));
+    }
+    std::ranges::stable_sort(faults, std::greater{}, [&](AlertFault fault) { return num_all(sum, fault); });
+    for (const auto fault : faults) {
+      const auto worst = std::ranges::max_element(world.scenes, {}, [&](const AlertRow& row) { return num_all(row.scores, fault); });
+      table.Add({world.name, std::string(NameOf(fault)), Number(sum.Num(AlertVerdict::kFar, fault)), Number(sum.Num(AlertVerdict::kNothing, fault)),
+                 Number(sum.Num(AlertVerdict::kRepeated, fault)), Number(PercentOfAll(num_false(sum, fault), sum.NumFalse()), 0),
+                 Number(PercentOfAll(sum.Num(AlertVerdict::kRepeated, fault), sum.Num(AlertVerdict::kRepeated)), 0), worst->scene});
+    }
+  }
+  return {"alerts_causes", "alerts: why they are false or repeated, counted", std::move(table)};
 }
 
 std::vector<Target<AlertScores>> AlertTargets() {
@@ -152,19 +181,19 @@ std::vector<NamedTable> AlertTablesOf(const std::vector<AlertWorld>& worlds) {
     rows.insert(rows.end(), world.scenes.begin(), world.scenes.end());
     rows.push_back({world.over_all, SumOf(world.scenes)});
   }
-  return {TargetsOf(worlds), VerdictTable(rows), LevelTable(rows), DangerTable(rows), StandingTable(rows), LeftOutTable(rows)};
+  return {TargetsOf(worlds), VerdictTable(rows), LevelTable(rows), FaultTable(worlds), DangerTable(rows), StandingTable(rows), LeftOutTable(rows)};
 }
 
 std::string AlertEventHeader() {
   return CsvRow({"scene", "seed", "second", "verdict", "level", "cause", "alert_id", "track_id", "thing", "kind", "true_distance_m",
-                 "true_approach_m", "told_distance_m", "told_bearing_deg", "delay_s", "text"});
+                 "true_approach_m", "told_distance_m", "told_bearing_deg", "delay_s", "why", "true_speed_mps", "told_speed_mps", "text"});
 }
 
 std::string AlertEventRow(const std::string& scene, std::uint64_t seed, const AlertEvent& event) {
   return CsvRow({scene, std::to_string(seed), Number(event.second, 1), event.what, event.level, event.cause, Number(event.alert_id),
                  Number(event.track_id), event.thing, event.kind, NumberOrNothing(event.distance_m, 2), NumberOrNothing(event.approach_m, 2),
                  NumberOrNothing(event.told_distance_m, 2), NumberOrNothing(RadToDeg(event.told_bearing_rad), 0), NumberOrNothing(event.delay_s, 1),
-                 event.text});
+                 std::string(NameOf(event.fault)), NumberOrNothing(event.true_speed_mps, 1), NumberOrNothing(event.told_speed_mps, 1), event.text});
 }
 
 }  // namespace lookout::eval
