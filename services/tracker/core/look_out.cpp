@@ -40,9 +40,9 @@ void LookOut::Rename(const Picture& picture, Utime time) {
     alerts_.Rename(from, things_.ThingOf(to), time);
     names_.Rename(from, to);
   }
-  proof_.Update(picture.tracks);
   if (picture.is_waterline_told) shore_m_ = picture.waterline_m;
-  things_.Update(time, picture.tracks, shore_m_);
+  proof_.Update(picture.tracks, shore_m_);
+  things_.Update(time, picture.tracks, shore_m_, &proof_);
   for (const auto& [from, to] : things_.merged()) alerts_.Rename(from, to, time);
   names_.Follow(picture.tracks, things_);
   Name(picture, time);

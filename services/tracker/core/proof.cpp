@@ -4,22 +4,51 @@
 #include <set>
 #include <utility>
 
+#include "services/tracker/core/beside.hpp"
+
 namespace lookout::tracker {
 
-void Proof::Update(std::span<const Track> tracks) {
+namespace {
+
+bool Stands(const Track& track) {
+  const bool is_confirmed = track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting;
+  return is_confirmed && track.velocity_mps.isZero(0.0) && !track.outline_m.empty();
+}
+
+bool IsBesideWhatStands(const Track& track, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m, double gap_m) {
+  if (track.outline_m.empty()) return false;
+  return IsWithinAny(track, shore_m, gap_m) || std::ranges::any_of(tracks, [&track, gap_m](const Track& other) {
+           return other.id != track.id && Stands(other) && IsWithin(track, other, gap_m);
+         });
+}
+
+}  // namespace
+
+Proof::Course Proof::CourseOf(const Track& track, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
+  const bool is_beside = IsBesideWhatStands(track, tracks, shore_m, kBesideM);
+  return {track.seen, track.position_m, track.seen, is_beside, !is_beside, false};
+}
+
+void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
   constexpr double kShareOfWay = 0.5;
   std::set<std::int64_t> ids;
   for (const auto& track : tracks) {
     if (track.velocity_mps.isZero(0.0)) continue;
     ids.insert(track.id);
-    auto& course = courses_.try_emplace(track.id, Course{track.seen, track.position_m, false}).first->second;
+    const auto [known, is_new] = courses_.try_emplace(track.id);
+    auto& course = known->second;
+    if (is_new) course = CourseOf(track, tracks, shore_m);
+    if (course.is_proven || track.seen == course.seen) continue;  // where it is not seen its place is a guess
+    course.seen = track.seen;
     const double speed_mps = track.velocity_mps.norm();
     const double seen_s = ToSeconds(track.seen - course.begin);
     const double way_m = (track.position_m - course.begin_m).norm();
+    course.has_left = course.has_left || way_m >= kLeavesM;
     const bool is_long_enough = seen_s >= std::clamp(speed_mps / kGainMps2, kLeastS, kMostS);
-    if (is_long_enough && way_m >= kShareOfWay * speed_mps * seen_s) course.is_proven = true;
-    // It swung at its mooring; how it runs now is another course.
-    if (!course.is_proven && seen_s > 2.0 * kMostS) course = {track.seen, track.position_m, false};
+    const bool is_free = !course.is_beside || way_m >= kPassesM || (course.has_left && !IsBesideWhatStands(track, tracks, shore_m, kTouchM));
+    course.is_proven = is_long_enough && way_m >= kShareOfWay * speed_mps * seen_s && is_free;
+    // It swung at its mooring; how it runs now is another course. What leaves slowly has not gone far by then.
+    if (!course.is_proven && !course.is_beside && seen_s > 2.0 * kMostS) course = CourseOf(track, tracks, shore_m);
   }
   std::erase_if(courses_, [&ids](const auto& item) { return !ids.contains(item.first); });
 }
@@ -32,9 +61,15 @@ void Proof::Rename(std::int64_t from_track, std::int64_t to_track) {
 }
 
 bool Proof::IsProven(const Track& track) const {
-  if (track.velocity_mps.norm() <= kFastMps) return true;
   const auto found = courses_.find(track.id);
-  return found != courses_.end() && found->second.is_proven;
+  const bool is_known = found != courses_.end();
+  if (track.velocity_mps.norm() <= kFastMps && !(is_known && found->second.is_beside)) return true;
+  return is_known && found->second.is_proven;
+}
+
+bool Proof::MayBePiece(std::int64_t track_id) const {
+  const auto found = courses_.find(track_id);
+  return found != courses_.end() && !found->second.is_proven && !found->second.has_left;
 }
 
 }  // namespace lookout::tracker

@@ -15,6 +15,10 @@ namespace lookout::tracker {
 /// a second later. A boat gets where its course says that it gets. So what is faster than kFastMps is proven when it was seen for as long as a boat
 /// needs to gain that speed, a second at least, and has gone half of the way by then. What has not shown itself for 6 s begins anew. Slower things
 /// leave time enough to be wrong about.
+///
+/// What began to move within kBesideM of something that stands (a quay, a boat at its berth) is, most often, a piece of that: as the own boat moves,
+/// now one end of it is seen and now the other. It is proven, slow or fast, when it has besides gone kLeavesM and is off by kTouchM, or has gone
+/// kPassesM; it may be acted on before that, but not before it has gone kLeavesM.
 class Proof {
  public:
   static constexpr double kFastMps = 1.0;
@@ -26,12 +30,21 @@ class Proof {
   /// A speedboat gains 25 kn in 4 s; small craft with an outboard less.
   static constexpr double kGainMps2 = 4.0;
 
+  static constexpr double kBesideM = 3.0;
+  static constexpr double kTouchM = 1.0;
+  /// More than the parts of small craft are apart.
+  static constexpr double kLeavesM = 3.0;
+  static constexpr double kPassesM = 10.0;
+
   /// One scan. Call Rename of that scan before.
-  void Update(std::span<const Track> tracks);
+  /// @param shore_m  remembered land with water before it, on the map
+  void Update(std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m = {});
   void Rename(std::int64_t from_track, std::int64_t to_track);
   void Clear() { courses_.clear(); }
 
   bool IsProven(const Track& track) const;
+  /// Whether it seems to move, and may be a piece of what stands beside it all the same.
+  bool MayBePiece(std::int64_t track_id) const;
   /// Seen for so short that it may be nothing, or of another size or speed.
   static bool IsYoung(const Track& track, Utime time) { return ToSeconds(time - track.first) < kYoungS; }
   /// Seen for longer than most crests live, and likelier a thing than one: what is tentative still counts as if it were confirmed.
@@ -43,8 +56,13 @@ class Proof {
   struct Course {
     Utime begin;  // when it was seen to move first
     Eigen::Vector2d begin_m = Eigen::Vector2d::Zero();
+    Utime seen;              // last
+    bool is_beside = false;  // it began so
+    bool has_left = false;   // or it did not begin beside anything
     bool is_proven = false;
   };
+  static Course CourseOf(const Track& track, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m);
+
   std::map<std::int64_t, Course> courses_;  // by track
 };
 

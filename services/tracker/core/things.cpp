@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include "services/tracker/core/beside.hpp"
 #include "services/tracker/core/danger.hpp"
-#include "services/tracker/core/outline.hpp"
 
 namespace lookout::tracker {
 
@@ -17,31 +17,16 @@ constexpr double kLongM = 8.0;
 bool IsTracked(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
 bool IsStructure(const Track& track) { return track.kind == TrackKind::kStructure || track.rectangle.length_m >= kLongM; }
 
-double ReachOf(const Track& track) { return 0.5 * Eigen::Vector2d(track.rectangle.length_m, track.rectangle.width_m).norm(); }
-
-bool IsWithin(const Track& one, const Track& other, double gap_m) {
-  const double reach_m = ReachOf(one) + ReachOf(other) + gap_m;
-  if ((one.rectangle.center_m - other.rectangle.center_m).squaredNorm() > reach_m * reach_m) return false;
-  return GapOf(one.outline_m, other.outline_m).distance_m <= gap_m;
-}
-
-bool IsBesideAny(const Track& track, std::span<const Eigen::Vector2d> places_m) {
-  const double reach_m = ReachOf(track) + Things::kBesideM;
-  return std::ranges::any_of(places_m, [&](const Eigen::Vector2d& place_m) {
-    return (place_m - track.rectangle.center_m).squaredNorm() <= reach_m * reach_m &&
-           GapOf(track.outline_m, {&place_m, 1}).distance_m <= Things::kBesideM;
-  });
-}
-
 }  // namespace
 
-void Things::Update(Utime time, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
+void Things::Update(Utime time, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m, const Proof* proof) {
   merged_.clear();
   std::vector<const Track*> standing;
   standing.reserve(tracks.size());
   std::set<std::int64_t> ids;
   for (const auto& track : tracks) {
-    if (!IsTracked(track) || !track.velocity_mps.isZero(0.0) || track.outline_m.empty()) continue;
+    const bool stands = track.velocity_mps.isZero(0.0) || (proof != nullptr && proof->MayBePiece(track.id));
+    if (!IsTracked(track) || !stands || track.outline_m.empty()) continue;
     standing.push_back(&track);
     ids.insert(track.id);
     auto& member = members_.try_emplace(track.id, Member{track.id, time, false, false}).first->second;
@@ -52,7 +37,7 @@ void Things::Update(Utime time, std::span<const Track> tracks, std::span<const E
   for (const auto* track : standing) {
     const auto& member = members_.at(track->id);
     if (member.thing == kLandTrack || ToSeconds(time - member.stands_since) < kStandsS) continue;
-    if (IsBesideAny(*track, shore_m)) Join(member.thing, kLandTrack);
+    if (IsWithinAny(*track, shore_m, kBesideM)) Join(member.thing, kLandTrack);
   }
   for (const auto* track : standing) {
     const auto& own = members_.at(track->id);

@@ -9,6 +9,7 @@
 
 #include "common/core/utime.hpp"
 #include "services/tracker/core/picture.hpp"
+#include "services/tracker/core/proof.hpp"
 
 namespace lookout::tracker {
 
@@ -25,7 +26,8 @@ class Things {
 
   /// One scan. Call Rename of that scan before.
   /// @param shore_m  remembered land with water before it, on the map
-  void Update(Utime time, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m);
+  /// @param proof    which of what seems to move may be a piece of what stands; nullptr: none
+  void Update(Utime time, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m, const Proof* proof = nullptr);
   void Rename(std::int64_t from_track, std::int64_t to_track);
   void Clear();
 

@@ -243,6 +243,28 @@ TEST(ClosestApproachDangers, AreNoneBetweenWhatStandsAndABoatThatLiesStill) {
 
 constexpr Utime kStart{std::chrono::seconds(1'700'000'000)};
 
+// One end of a pontoon, then the other: it seems to run at the boat. Abeam it is nothing; ahead the pontoon itself is too near.
+TEST(ClosestApproachDangers, OfAPieceOfWhatStandsCountOnTheOwnWayAlone) {
+  for (const double abeam_m : {20.0, 3.0}) {
+    for (const bool is_own_still : {false, true}) {
+      Picture picture;
+      picture.tracks = {At(1, {abeam_m + 3.0, 20.0}), At(2, {abeam_m, 20.0})};
+      for (auto& track : picture.tracks) track.rectangle.center_m = track.position_m = track.outline_m[0];
+      picture.tracks[0].approach.probability = 0.0;
+      picture.tracks[1].velocity_mps = {-4.0, -4.0};
+      picture.tracks[1].approach.tcpa_s = 3.0;
+      picture.tracks[1].first = kStart - std::chrono::seconds(5);
+      picture.tracks[1].seen = kStart;
+      Proof proof;
+      proof.Update(picture.tracks);
+      const auto dangers = ClosestApproachDangers(kApproach, picture, Own(), is_own_still, {}, &proof, kStart);
+      const auto& piece = dangers.back();
+      EXPECT_EQ(piece.thing, 2);
+      EXPECT_EQ(piece.probability > 0.0, abeam_m < 10.0 && !is_own_still) << abeam_m << " " << is_own_still;
+    }
+  }
+}
+
 TEST(StillWatch, SeesADriftAndADepartureButNoSway) {
   StillWatch watch;
   auto time = kStart;

@@ -116,8 +116,11 @@ TEST_F(NamesOfThings, OfAPierStayWhereABoatCastsOff) {
   Scans(10, pieces);
   Order(5, "Kiosk pier");
   Scans(5, pieces);
-  pieces[0].velocity_mps = {-1.0, 0.0};
-  Scans(5, pieces);
+  for (int i = 0; i < 50; ++i) {
+    pieces[0] = TrackAt(2, -0.1 * i);
+    pieces[0].velocity_mps = {-1.0, 0.0};
+    Scans(1, pieces);
+  }
   EXPECT_EQ(look_out_.names().Of(2), "");
   EXPECT_EQ(look_out_.names().Of(5), "Kiosk pier");
   for (const auto& alert : look_out_.alerts()) EXPECT_EQ(alert.name, alert.thing == 2 ? "" : "Kiosk pier") << alert.thing;

@@ -60,6 +60,29 @@ TEST_F(ThingsTest, OfABoatAtItsPierIsThePierUntilItCastsOff) {
   EXPECT_EQ(things_.ThingOf(2), 2);
 }
 
+TEST_F(ThingsTest, OfWhatMayBeAPieceOfAPierIsThePierAlthoughItSeemsToMove) {
+  const auto pier = Standing(1, 0.0, 30.0);
+  auto piece = Standing(2, 0.0, 5.0, 3.0);
+  piece.velocity_mps = {0.0, 0.8};
+  Proof proof;
+  for (int i = 0; i < 60; ++i) {
+    time_ += std::chrono::milliseconds(100);
+    piece.seen = time_;
+    const double way_m = 0.08 * i;
+    auto moved = piece;
+    moved.position_m.y() += way_m;
+    moved.rectangle.center_m.y() += way_m;
+    for (auto& corner_m : moved.outline_m) corner_m.y() += way_m;
+    const std::vector<Track> tracks{pier, moved};
+    proof.Update(tracks);
+    things_.Update(time_, tracks, {}, &proof);
+    if (i == 20) {
+      EXPECT_EQ(things_.ThingOf(2), 1);
+    }
+  }
+  EXPECT_EQ(things_.ThingOf(2), 2) << "it has left";
+}
+
 // The boat was followed first, so the pier beside it bore its number: as it cast off, both were one thing for ever.
 TEST_F(ThingsTest, OfWhatStaysAreNoneOfTheBoatThatCastsOff) {
   auto boat = Standing(2, 0.0, 5.0, 3.0);

@@ -1,0 +1,108 @@
+#include "services/tracker/core/proof.hpp"
+
+#include <chrono>
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace lookout::tracker::proven {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Utime kBegin{seconds(1'700'000'000)};
+
+Track BoxAt(std::int64_t id, double east_m, double north_m, const Eigen::Vector2d& velocity_mps = Eigen::Vector2d::Zero()) {
+  Track track;
+  track.id = id;
+  track.status = TrackStatus::kConfirmed;
+  track.velocity_mps = velocity_mps;
+  track.position_m = track.rectangle.center_m = {east_m, north_m};
+  track.rectangle.length_m = track.rectangle.width_m = 2.0;
+  track.outline_m = {{east_m - 1.0, north_m - 1.0}, {east_m + 1.0, north_m - 1.0}, {east_m + 1.0, north_m + 1.0}, {east_m - 1.0, north_m + 1.0}};
+  return track;
+}
+
+// A boat that goes north from the origin, along a row of what stands.
+class ProofTest : public ::testing::Test {
+ protected:
+  // @param shown  share of the course that it truly goes
+  void Run(double for_s, double speed_mps, double shown = 1.0, bool is_seen = true) {
+    for (int i = 0; i < static_cast<int>(10.0 * for_s + 0.5); ++i) {
+      time_ += milliseconds(100);
+      north_m_ += 0.1 * shown * speed_mps;
+      boat_ = BoxAt(1, 0.0, north_m_, {0.0, speed_mps});
+      seen_ = is_seen ? time_ : seen_;
+      boat_.seen = seen_;
+      auto tracks = standing_;
+      tracks.push_back(boat_);
+      proof_.Update(tracks, shore_m_);
+    }
+  }
+
+  Proof proof_;
+  Utime time_ = kBegin;
+  Utime seen_ = kBegin;
+  double north_m_ = 0.0;
+  Track boat_;
+  std::vector<Track> standing_;
+  std::vector<Eigen::Vector2d> shore_m_;
+};
+
+TEST_F(ProofTest, AFastCourseIsProvenByItsWay) {
+  Run(0.8, 4.0);
+  EXPECT_FALSE(proof_.IsProven(boat_));
+  EXPECT_FALSE(proof_.MayBePiece(1));
+  Run(0.5, 4.0);
+  EXPECT_TRUE(proof_.IsProven(boat_));
+}
+
+TEST_F(ProofTest, ACourseThatDoesNotGetAnywhereIsNot) {
+  Run(5.0, 4.0, 0.2);
+  EXPECT_FALSE(proof_.IsProven(boat_));
+}
+
+TEST_F(ProofTest, AWayThatIsGuessedProvesNothing) {
+  Run(0.5, 4.0);
+  Run(3.0, 4.0, 1.0, false);
+  EXPECT_FALSE(proof_.IsProven(boat_));
+}
+
+TEST_F(ProofTest, WhatIsSlowInOpenWaterNeedsNone) {
+  Run(0.1, 0.8);
+  EXPECT_TRUE(proof_.IsProven(boat_));
+}
+
+TEST_F(ProofTest, WhatBeganBesideSomethingThatStandsMayBeAPieceOfIt) {
+  for (const bool is_shore : {false, true}) {
+    SCOPED_TRACE(is_shore);
+    proof_.Clear();
+    north_m_ = 0.0;
+    standing_.clear();
+    shore_m_.clear();
+    if (is_shore) {
+      shore_m_ = {{-2.0, 0.0}};
+    } else {
+      standing_ = {BoxAt(2, -4.0, 0.0)};
+    }
+    Run(3.0, 0.8);
+    EXPECT_TRUE(proof_.MayBePiece(1)) << "2.3 m";
+    EXPECT_FALSE(proof_.IsProven(boat_)) << "slow as it is";
+    Run(2.0, 0.8);
+    EXPECT_FALSE(proof_.MayBePiece(1));
+    EXPECT_TRUE(proof_.IsProven(boat_)) << "it has left";
+  }
+}
+
+// Along a quay it is off by less than 1 m all the time.
+TEST_F(ProofTest, WhatGoesAlongAQuayIsProvenFartherOn) {
+  for (int i = -2; i < 10; ++i) standing_.push_back(BoxAt(10 + i, -2.5, 2.0 * i));
+  Run(3.0, 2.0);
+  EXPECT_FALSE(proof_.MayBePiece(1)) << "to act on";
+  EXPECT_FALSE(proof_.IsProven(boat_));
+  Run(2.5, 2.0);
+  EXPECT_TRUE(proof_.IsProven(boat_));
+}
+
+}  // namespace
+}  // namespace lookout::tracker::proven
