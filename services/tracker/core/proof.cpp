@@ -43,10 +43,11 @@ void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2
     const double speed_mps = track.velocity_mps.norm();
     const double seen_s = ToSeconds(track.seen - course.begin);
     const double way_m = (track.position_m - course.begin_m).norm();
-    course.has_left = course.has_left || way_m >= kLeavesM;
     const bool is_long_enough = seen_s >= std::clamp(speed_mps / kGainMps2, kLeastS, kMostS);
-    const bool is_free = !course.is_beside || way_m >= kPassesM || (course.has_left && !IsBesideWhatStands(track, tracks, shore_m, kTouchM));
-    course.is_proven = is_long_enough && way_m >= kShareOfWay * speed_mps * seen_s && is_free;
+    const bool gets_there = is_long_enough && way_m >= kShareOfWay * speed_mps * seen_s;
+    course.has_left = course.has_left || (gets_there && way_m >= kLeavesM);
+    const bool is_off = course.has_left && !IsBesideWhatStands(track, tracks, shore_m, kTouchM);
+    course.is_proven = gets_there && (!course.is_beside || is_off || way_m >= kPassesM);
     // It swung at its mooring; how it runs now is another course. What leaves slowly has not gone far by then.
     if (!course.is_proven && !course.is_beside && seen_s > 2.0 * kMostS) course = CourseOf(track, tracks, shore_m);
   }
@@ -62,9 +63,7 @@ void Proof::Rename(std::int64_t from_track, std::int64_t to_track) {
 
 bool Proof::IsProven(const Track& track) const {
   const auto found = courses_.find(track.id);
-  const bool is_known = found != courses_.end();
-  if (track.velocity_mps.norm() <= kFastMps && !(is_known && found->second.is_beside)) return true;
-  return is_known && found->second.is_proven;
+  return track.velocity_mps.isZero(0.0) || (found != courses_.end() && found->second.is_proven);
 }
 
 bool Proof::MayBePiece(std::int64_t track_id) const {

@@ -12,16 +12,14 @@
 namespace lookout::tracker {
 
 /// Where one of two pieces of a hull or a crest behind another is taken for the thing itself, it seems to run, as fast as both are apart, and is gone
-/// a second later. A boat gets where its course says that it gets. So what is faster than kFastMps is proven when it was seen for as long as a boat
-/// needs to gain that speed, a second at least, and has gone half of the way by then. What has not shown itself for 6 s begins anew. Slower things
-/// leave time enough to be wrong about.
+/// a second later. A boat gets where its course says that it gets. So what moves is proven when it was seen for as long as a boat needs to gain that
+/// speed, a second at least, and has gone half of the way by then. What has not shown itself for 6 s begins anew.
 ///
 /// What began to move within kBesideM of something that stands (a quay, a boat at its berth) is, most often, a piece of that: as the own boat moves,
 /// now one end of it is seen and now the other. It is proven, slow or fast, when it has besides gone kLeavesM and is off by kTouchM, or has gone
 /// kPassesM; it may be acted on before that, but not before it has gone kLeavesM.
 class Proof {
  public:
-  static constexpr double kFastMps = 1.0;
   static constexpr double kLeastS = 1.0;
   static constexpr double kMostS = 3.0;
   static constexpr double kYoungS = 1.0;
