@@ -32,6 +32,7 @@ test("a thing says on which side it passes, at which distance and when", () => {
 
 test("what opens, what is lost and the watch have words of their own", () => {
   assert.equal(lineOf(alert({ time_left_s: NaN, tcpa_s: 0, is_in_zone: true }), picture(), settings), "12\u00a0m, 29°\u00a0stbd · opens · in the zone");
+  assert.equal(lineOf(alert({ is_in_zone: true }), picture(), settings), lineOf(alert(), picture(), settings), "where it passes says more than the zone");
   const lost = alert({ sight: Alert.SIGHT_LOST, track_id: 0, cpa_m: NaN, tcpa_s: NaN, time_left_s: NaN });
   assert.equal(lineOf(lost, picture(), settings), "last 12\u00a0m, 29°\u00a0stbd");
   assert.equal(sightOf(lost), "not seen any more");

@@ -36,6 +36,14 @@ test("alerts of one level stand by the time that is left, and change places only
   assert.deepEqual(at(NaN, NaN, [1, 2]), [1, 2]);
 });
 
+test("of what does not come too near the nearer stands first, and what is not seen any more last", () => {
+  const far = (id: number, distance_m: number, change: Partial<Alert> = {}) => alert(id, { time_left_s: NaN, distance_m, ...change });
+  assert.deepEqual(ids(byGravity([far(1, 13), far(2, 78)], [1])), [1, 2], "although the other is new");
+  assert.deepEqual(ids(byGravity([far(1, 13), far(2, 12)], [1, 2])), [1, 2], "hardly nearer");
+  assert.deepEqual(ids(byGravity([far(1, 13), far(2, 10)], [1, 2])), [2, 1]);
+  assert.deepEqual(ids(byGravity([far(1, 5, { sight: Alert.SIGHT_LOST }), far(2, 78)], [1, 2])), [2, 1]);
+});
+
 test("what is new stands before what leaves as much time, and level before time", () => {
   assert.deepEqual(ids(byGravity([alert(1), alert(2), alert(3)], [1, 2])), [3, 1, 2]);
   assert.deepEqual(ids(byGravity([alert(1, { time_left_s: 0 }), alert(2, { level: Alert.LEVEL_WARNING, time_left_s: 5 })], [1, 2])), [2, 1]);

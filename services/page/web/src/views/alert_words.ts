@@ -51,6 +51,10 @@ export function whatComes(alert: wire.Alert, picture: Picture, settings: Setting
 export function lineOf(alert: wire.Alert, picture: Picture, settings: Settings): string {
   if (alert.cause === wire.Alert.CAUSE_WATCH || !Number.isFinite(alert.distance_m)) return alert.text;
   const where = `${tight(length(settings, alert.distance_m))}, ${tight(relative(alert.bearing_rad))}`;
-  return [alert.sight === wire.Alert.SIGHT_LOST ? words.lastPlace(where) : where, holds(alert) ? whatComes(alert, picture, settings) : "", holds(alert) && alert.is_in_zone ? words.inZone : ""]
-    .filter((part) => part !== "").join(" · ");
+  if (alert.sight === wire.Alert.SIGHT_LOST) return words.lastPlace(where);
+  if (!holds(alert)) return where;
+  // Where it passes says more than that it is in the zone, which the chart shows: the line is read at a glance.
+  const comes = whatComes(alert, picture, settings);
+  const isToldByZone = alert.is_in_zone && (comes === "" || opensOut(alert));
+  return [where, comes, isToldByZone ? words.inZone : ""].filter((part) => part !== "").join(" · ");
 }

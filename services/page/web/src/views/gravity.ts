@@ -9,9 +9,11 @@ export function gravityOf(alert: Pick<wire.Alert, "level" | "state">): Gravity {
   return alert.level >= wire.Alert.LEVEL_WARNING ? "warning" : "caution";
 }
 
+const kClearlyNearer = 0.8;
 const kClearly_s = 1;  // by so much less time is left: less makes no other order, or a button would be touched for another
 
-/** What holds: what is not acknowledged before what is, warnings before cautions, then what leaves less time.
+/** What holds: what is not acknowledged before what is, warnings before cautions, then what leaves less time. Where none of two comes too near: what is
+ *  seen before what is not seen any more, then the nearer.
  *  @param before ids in the order of before: what is as urgent stays where it was; what is new comes first */
 export function byGravity(alerts: readonly wire.Alert[], before: readonly number[] = []): wire.Alert[] {
   const place = (alert: wire.Alert) => before.indexOf(alert.id);
@@ -26,7 +28,10 @@ export function byGravity(alerts: readonly wire.Alert[], before: readonly number
 }
 function isClearlySooner(one: wire.Alert, other: wire.Alert): boolean {
   const left = last(one.time_left_s), of_other = last(other.time_left_s);
-  return left < Infinity && left < of_other - kClearly_s;
+  if (left < Infinity || of_other < Infinity) return left < Infinity && left < of_other - kClearly_s;
+  const isLost = (alert: wire.Alert) => alert.sight === wire.Alert.SIGHT_LOST;
+  if (isLost(one) !== isLost(other)) return isLost(other);
+  return last(one.distance_m) < kClearlyNearer * last(other.distance_m);
 }
 
 /** What is over and was not acknowledged, the newest first. */

@@ -18,6 +18,7 @@ export class NameForm {
   private readonly input = make("input");
   private readonly said = make("p", "note");
   private track_id = 0;
+  private shown = "";
 
   constructor(private readonly state: State) {
     const label = make("label");
@@ -33,18 +34,22 @@ export class NameForm {
     this.element.onsubmit = (event) => { event.preventDefault(); void this.send(); };
   }
 
-  /** What was typed stays until another track is chosen. */
+  /** What was typed stays until another track is chosen; else the name that another window gave comes up. */
   draw(track_id: number): void {
     const { state } = this;
     this.element.hidden = state.showing.kind !== "live" || state.hello?.mode !== "live";
-    if (this.track_id === track_id) return;
+    const name = state.picture?.name_of_track.get(track_id) ?? "", isOther = this.track_id !== track_id;
+    const isTyped = this.input.value !== this.shown || document.activeElement === this.input;
+    if (!isOther && (isTyped || name === this.shown)) return;
     this.track_id = track_id;
-    this.input.value = state.picture?.name_of_track.get(track_id) ?? "";
-    setText(this.said, "");
+    this.shown = name;
+    this.input.value = name;
+    if (isOther) setText(this.said, "");
   }
 
   private async send(): Promise<void> {
     const name = nameFrom(this.input.value), { track_id } = this;
+    if (name !== null) this.shown = this.input.value;
     const refused = name === null ? words.tooLong : await order(this.state, { kind: "name", track_id, name });
     if (track_id === this.track_id) setText(this.said, refused ?? words.sent);
   }
