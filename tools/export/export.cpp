@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <initializer_list>
 #include <memory>
 #include <ostream>
 #include <stdexcept>
@@ -13,7 +12,6 @@
 
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
-#include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
@@ -24,8 +22,7 @@
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/tracks_t.hpp"
-#include "tools/export/map_sinks.hpp"
-#include "tools/export/map_table.hpp"
+#include "tools/export/outputs.hpp"
 #include "tools/export/sinks.hpp"
 #include "tools/log/log_span.hpp"
 #include "tools/log/other_type.hpp"
@@ -46,80 +43,17 @@ struct Tally {
   std::int64_t num_inconsistent = 0;
 };
 
-bool IsOneOf(const std::string& table, std::initializer_list<std::string_view> tables) { return std::ranges::find(tables, table) != tables.end(); }
-
-bool IsMap(const Request& request) { return IsOneOf(request.format, {"geojson", "kml", "gpx"}); }
-
 std::string SpanFault(const Span& span) { return span.from_us && span.to_us && *span.from_us >= *span.to_us ? "--from is not before --to" : ""; }
-
-// @return what is wrong with the choice of a part of the log; empty when nothing
-std::string SelectionFault(const Request& request) {
-  const bool is_csv_or_map = request.format == "csv" || IsMap(request);
-  const bool is_part = !request.span.IsAll() || !request.from.empty() || !request.to.empty();
-  if (is_part && request.table == "map") return "--from and --to are not for --table map: it is of whole logs";
-  if (is_part && !is_csv_or_map) return "--from and --to are not for --format " + request.format;
-  if (auto fault = SpanFault(request.span); !fault.empty()) return fault;
-  if (request.near && !(is_csv_or_map && IsOneOf(request.table, {"obstacles", "tracks", "pose"}))) {
-    return "--near is for --table obstacles, tracks or pose only, as csv or a map";
-  }
-  return "";
-}
 
 // @return what is wrong with the request; empty when nothing
 std::string Fault(const Request& request) {
-  const auto names = TableNames();
-  if (std::ranges::find(names, request.table) == names.end()) return "there is no table " + request.table;
-  if (request.format == "ply" && request.table != "returns") return "--format ply is for --table returns only";
-  if (request.format == "svg" && !IsOneOf(request.table, {"returns", "merges", "obstacles", "pose", "tracks"})) {
-    return "--format svg is for --table returns, merges, obstacles, pose or tracks only";
-  }
-  const bool is_own_map = request.table == "map";
-  if (is_own_map && !IsOneOf(request.format, {"csv", "geojson"})) return "--table map is csv or geojson only";
-  if (IsMap(request) && !is_own_map && !IsOneOf(request.table, {"obstacles", "tracks", "pose"})) {
-    return "--format " + request.format + " is for --table obstacles, tracks or pose only" + (request.format == "geojson" ? ", or map" : "");
-  }
-  const bool has_scan = request.scan || (IsMap(request) && request.is_last_scan);
-  if ((request.table == "pose" || is_own_map || (request.table == "tracks" && !IsMap(request))) && has_scan) {
-    return "--scan is not for --table " + request.table + (request.table == "tracks" ? " as " + request.format : "");
-  }
-  if (!IsOneOf(request.format, {"csv", "ply", "svg"}) && !IsMap(request)) return "there is no format " + request.format;
-  if (request.format == "csv" && request.table != "merges" && request.scan) return "--scan is for clouds, pictures and maps, or --table merges";
-  if (request.all_scans && (request.format != "csv" || request.table != "merges")) return "--scan all is for --table merges only, as csv";
-  if ((request.table == "merges") != request.config.has_value()) return "--config and --table merges go together: scans are segmented again by it";
-  if (auto fault = SelectionFault(request); !fault.empty()) return fault;
+  if (auto fault = OutputFault(request); !fault.empty()) return fault;
+  if (auto fault = SpanFault(request.span); !fault.empty()) return fault;
   for (const auto& input : request.inputs) {
     std::error_code error;
     if (request.output && std::filesystem::equivalent(input, *request.output, error)) return "--out is one of the inputs: " + input.string();
   }
   return "";
-}
-
-// @throws config::ConfigError
-segmenter::Params MergingParams(const std::filesystem::path& config_folder) {
-  auto params = segmenter::LoadParams(config_folder);
-  if (params.method == segmenter::Method::kLookout) return params;
-  throw config::ConfigError({config::FaultLine(config_folder / "segmenter.txtpb", "method", "PAPER merges no pairs: --table merges is of LOOKOUT")});
-}
-
-// @throws config::ConfigError
-std::unique_ptr<Sink> MakeSink(const Request& request) {
-  if (request.table == "merges") {
-    const auto params = MergingParams(*request.config);
-    if (request.format == "svg") return MakeMergesSvgSink(params, config::LoadBoat(*request.config), request.scan);
-    return MakeMergesSink(params, request.scan, request.all_scans);
-  }
-  if (request.table == "map" && request.format == "geojson") return MakeMapSink(true);
-  if (IsMap(request)) {
-    const Scans scans{request.scan || request.is_last_scan, request.scan};
-    if (request.table == "obstacles") return MakeObstacleMapSink(MakeMapWriter(request.format, request.table), request.near, scans);
-    return MakeTrackMapSink(MakeMapWriter(request.format, request.table), request.table == "tracks", request.near, scans);
-  }
-  if (request.format == "ply") return MakePlySink(request.scan);
-  if (request.format == "svg" && IsOneOf(request.table, {"pose", "tracks"})) return MakeTrackSvgSink(request.table == "tracks");
-  if (request.format == "svg") {
-    return MakeScanSvgSink(request.table == "returns" ? ChosenScan::Of::kReturns : ChosenScan::Of::kObstacles, request.scan);
-  }
-  return MakeCsvSink(request.table, request.near);
 }
 
 // By their first events: a map is made in the order of time, and who gives its logs need not know it.
@@ -228,9 +162,9 @@ std::FILE* ProgressOf(const Request& request) {
   return is_file ? request.progress : nullptr;
 }
 
-int Export(const Request& request, std::ostream& errors) {
+int Export(const Request& request, const Output& row, std::ostream& errors) {
   constexpr std::size_t kBlockBytes = 1 << 18;
-  const auto sink = MakeSink(request);
+  const auto sink = row.make(request);
   std::vector<Tally> tallies;
   for (const auto& channel : sink->Channels()) tallies.push_back({.channel = channel});
   // All inputs are opened first: a mistyped name must not cost an hour of reading.
@@ -287,8 +221,7 @@ int Export(const Request& request, std::ostream& errors) {
     throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name) + of_this + (when.empty() ? "" : " " + when));
   }
   if (request.format != "csv" && text.empty()) {  // the end of what was written before is not empty
-    if (IsOneOf(request.table, {"pose", "tracks"}) && !request.scan) throw std::runtime_error("no pose knows its position");
-    throw std::runtime_error(request.scan ? "the input holds no scan " + std::to_string(*request.scan) : "the input holds no scan");
+    throw std::runtime_error(request.scan ? "the input holds no scan " + std::to_string(*request.scan) : std::string(row.when_empty));
   }
   output.Write(text);
   output.Commit();
@@ -304,10 +237,11 @@ int Run(const Request& request, std::ostream& errors) {
     return kExitUsage;
   }
   try {
-    if (request.table != "map") return Export(request, errors);
+    const auto& row = *FindOutput(request.table, request.format);
+    if (!row.is_by_time) return Export(request, row, errors);
     Request ordered = request;
     ordered.inputs = InOrderOfTime(request.inputs);
-    return Export(ordered, errors);
+    return Export(ordered, row, errors);
   } catch (const io::BrokenPipe&) {  // no fault: `| head` ends quietly
     return kExitFine;
   } catch (const UsageError& error) {

@@ -16,8 +16,7 @@ namespace lookout::exporter {
 struct Request {
   std::vector<std::filesystem::path> inputs;  // lcm-logs, read in this order as one
   std::string table;
-  // "csv"; "ply" (returns); "svg" (returns, merges, obstacles, pose, tracks); "geojson", "kml", "gpx" (obstacles, tracks, pose)
-  std::string format = "csv";
+  std::string format = "csv";                                  // of the table, as outputs.hpp has them, and as it says which options go with it
   std::optional<std::filesystem::path> output = std::nullopt;  // nullopt = standard output
   bool force = false;                                          // an existing output is replaced
   std::optional<std::int64_t> scan = std::nullopt;             // seq of the scan; nullopt = the last whole one (maps: all)

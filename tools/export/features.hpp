@@ -47,13 +47,4 @@ class MapWriter {
   virtual void End(std::string& text) = 0;
 };
 
-/// OGC KML 2.3 (12-007r2) with Google's gx:Track: a placemark for each feature, with its time, so that the slider of Google Earth shows one scan
-/// after the other; the style is that of `what`.
-/// @param table  "obstacles", "tracks" or "pose": its fields have types
-std::unique_ptr<MapWriter> MakeKmlWriter(std::string_view table);
-
-/// GPX 1.1: points as waypoints, lines with times as tracks. Tracks stand behind all waypoints, so they are held until the end; one with the name of
-/// that before it becomes another segment of it. Areas and lines without times have no place in GPX.
-std::unique_ptr<MapWriter> MakeGpxWriter();
-
 }  // namespace lookout::exporter

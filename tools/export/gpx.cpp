@@ -4,7 +4,7 @@
 #include <iterator>
 #include <optional>
 
-#include "tools/export/features.hpp"
+#include "tools/export/map_formats.hpp"
 #include "tools/export/map_text.hpp"
 
 namespace lookout::exporter {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/export/features.hpp"
+#include "tools/export/map_formats.hpp"
 #include "tools/export/map_text.hpp"
 
 namespace lookout::exporter {

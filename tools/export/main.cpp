@@ -13,6 +13,7 @@
 #include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/export/export.hpp"
+#include "tools/export/outputs.hpp"
 #include "tools/export/sinks.hpp"
 
 int main(int argc, char** argv) {
@@ -25,25 +26,26 @@ int main(int argc, char** argv) {
   app.add_option("--in", request.inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
   const auto names = exporter::TableNames();
   app.add_option("--table", request.table, "what to export")->required()->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
-  app.add_option("--format", request.format,
-                 "csv; ply (table returns); svg (tables returns, merges and obstacles: a scan; pose and tracks: the track); maps: geojson, kml, gpx "
-                 "(tables obstacles, tracks, pose); geojson (table map)")
-      ->check(CLI::IsMember({"csv", "ply", "svg", "geojson", "kml", "gpx"}))
+  app.add_option("--format", request.format, exporter::FormatsText() + ". A picture (svg) is of one scan, or of the boat's track")
+      ->check(CLI::IsMember(exporter::FormatNames()))
       ->capture_default_str();
   app.add_option("--out", request.output,
                  "file to write, as FILE.partial until it is whole; one that exists is refused; without it: standard output");
   app.add_flag("--force", request.force, "replace an existing --out");
   auto* scan_option = app.add_option("--scan", scan,
-                                     "ply, svg and table merges: seq of the scan, or \"last\": the last whole one; merges as csv: or \"all\"; "
-                                     "maps: without it the whole log")
+                                     exporter::PlacesText(exporter::kScanOption) + ": seq of the scan, or \"last\": the last whole one; " +
+                                         exporter::PlacesText(exporter::kLastScanOption) + ": without it the whole log; " +
+                                         exporter::PlacesText(exporter::kAllScansOption) + ": or \"all\"")
                           ->capture_default_str();
   const CLI::Validator is_given([](std::string& text) { return text.empty() ? std::string("no time is given") : std::string(); }, "");
-  app.add_option("--from", request.from, std::string("csv and maps: what was measured at this time or later: ") + lookout::kTimeForms)
+  app.add_option("--from", request.from,
+                 exporter::PlacesText(exporter::kSpanOption) + ": what was measured at this time or later: " + lookout::kTimeForms)
       ->check(is_given);
   app.add_option("--to", request.to, "the same; the first time that is not in it")->check(is_given);
-  auto* near_option =
-      app.add_option("--near", near, "csv and maps of obstacles, tracks and pose: LATITUDE,LONGITUDE,RADIUS in degrees and metres: what lies within");
-  app.add_option("--config", request.config, "table merges: the boat's folder, by which LIDAR_SCAN is segmented again")
+  auto* near_option = app.add_option(
+      "--near", near, exporter::PlacesText(exporter::kNearOption) + ": LATITUDE,LONGITUDE,RADIUS in degrees and metres: what lies within");
+  app.add_option("--config", request.config,
+                 exporter::PlacesText(exporter::kConfigOption) + ": the boat's folder, by which LIDAR_SCAN is segmented again")
       ->check(lookout::config::BoatFolderFault);
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
   app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line or config.");

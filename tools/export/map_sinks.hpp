@@ -1,4 +1,4 @@
-// Maps out of a log, in the formats of MapWriter.
+// Maps out of a log, in the formats of map_formats.hpp.
 #pragma once
 
 #include <memory>
@@ -16,9 +16,6 @@ struct Scans {
   bool is_one = false;                             // else all
   std::optional<std::int64_t> seq = std::nullopt;  // of the one: the first of that number; nullopt = the last whole one
 };
-
-/// @return what writes `format`: "geojson", "kml" or "gpx"; nullptr when it is none of them
-std::unique_ptr<MapWriter> MakeMapWriter(std::string_view format, std::string_view table);
 
 /// OBSTACLES, message by message: needs as much memory for a day as for a scan. Each that has a place gives a point (`obstacle`), its outline
 /// (`outline`; of land `waterline`, an open line) and the ellipse of its place (`ellipse`, 95 %).

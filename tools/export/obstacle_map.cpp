@@ -7,7 +7,6 @@
 
 #include "common/bus/decode.hpp"
 #include "common/core/utime.hpp"
-#include "tools/export/geojson.hpp"
 #include "tools/export/map_sinks.hpp"
 #include "tools/export/outlines.hpp"
 #include "tools/export/scans.hpp"
@@ -128,12 +127,6 @@ class ObstacleMapSink final : public Sink {
 };
 
 }  // namespace
-
-std::unique_ptr<MapWriter> MakeMapWriter(std::string_view format, std::string_view table) {
-  if (format == "geojson") return MakeGeoJsonWriter();
-  if (format == "kml") return MakeKmlWriter(table);
-  return format == "gpx" ? MakeGpxWriter() : nullptr;
-}
 
 std::unique_ptr<Sink> MakeObstacleMapSink(std::unique_ptr<MapWriter> writer, const std::optional<Circle>& near, const Scans& scans) {
   return std::make_unique<ObstacleMapSink>(std::move(writer), near, scans);

@@ -196,7 +196,7 @@ TEST_F(MergesTest, ThePictureHasALineForEachPairOfTheLastRoundAndAReasonForEachS
 TEST_F(MergesTest, NeedAConfigOfTheMethodThatMergesPairs) {
   AddScan(Lake(1), 0);
   EXPECT_EQ(Export("merges"), kExitUsage);
-  EXPECT_NE(errors_.find("--config and --table merges go together"), std::string::npos) << errors_;
+  EXPECT_NE(errors_.find("--table merges needs --config"), std::string::npos) << errors_;
   EXPECT_EQ(Export(Request{.inputs = {log_}, .table = "returns", .output = folder_ / "out", .config = config_}), kExitUsage);
   EXPECT_EQ(ExportMerges("ply"), kExitUsage);
   EXPECT_EQ(ExportMerges("svg", std::nullopt, true), kExitUsage);

@@ -169,13 +169,16 @@ TEST_F(SelectionTest, SaysWhatIsWrong) {
   request.span = {kStartUs, std::nullopt};
   request.format = "svg";
   EXPECT_EQ(Export(request), kExitUsage);
-  EXPECT_NE(errors_.find("--from and --to are not for --format svg"), std::string::npos) << errors_;
+  EXPECT_NE(errors_.find("--from and --to are for csv of every table but map; geojson, kml and gpx of obstacles, tracks and pose only"),
+            std::string::npos)
+      << errors_;
   request = {.inputs = {log_}, .table = "alerts", .output = folder_ / "out", .near = ParseCircle("1,2,3")};
   EXPECT_EQ(Export(request), kExitUsage);
-  EXPECT_NE(errors_.find("--near is for --table obstacles, tracks or pose only"), std::string::npos) << errors_;
+  EXPECT_NE(errors_.find("--near is for csv, geojson, kml and gpx of obstacles, tracks and pose only"), std::string::npos) << errors_;
   for (const auto* format : {"geojson", "kml", "gpx"}) {
     EXPECT_EQ(Export("returns", format), kExitUsage);
-    EXPECT_NE(errors_.find("is for --table obstacles, tracks or pose only"), std::string::npos) << errors_;
+    EXPECT_NE(errors_.find("--format " + std::string(format) + " is for --table "), std::string::npos) << errors_;
+    EXPECT_NE(errors_.find("obstacles, tracks and pose only"), std::string::npos) << errors_;
     EXPECT_EQ(Export("pose", format, 3), kExitUsage);
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));

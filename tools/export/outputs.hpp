@@ -1,0 +1,53 @@
+// What lookout-export can write: a row for each table in each of its formats. --help, the refusals and the makers come from these rows.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/export/export.hpp"
+#include "tools/export/sink.hpp"
+
+namespace lookout::exporter {
+
+/// Options of the command line that not every output has; a row holds the bits of those that it has.
+enum Option : unsigned {
+  kNoOption = 0,
+  kSpanOption = 1,       // --from and --to
+  kNearOption = 2,       // --near
+  kScanOption = 4,       // --scan NUMBER
+  kLastScanOption = 8,   // --scan last means another thing than no --scan: a map is of all scans
+  kAllScansOption = 16,  // --scan all
+  kConfigOption = 32,    // --config, which must be given then
+};
+
+struct Output {
+  std::string_view table;
+  std::string_view format;
+  unsigned options;  // bits of Option
+  /// @throws config::ConfigError
+  std::unique_ptr<Sink> (*make)(const Request& request);
+  bool is_by_time = false;                                  // reads its logs in the order of their times, not as they are given
+  std::string_view when_empty = "the input holds no scan";  // what the log lacks where nothing comes of it
+};
+
+/// All rows: of a table those of its formats, csv first.
+const std::vector<Output>& Outputs();
+
+/// @return nullptr where the table is not written in that format
+const Output* FindOutput(std::string_view table, std::string_view format);
+
+/// The formats, each once, in the order of --help.
+std::vector<std::string> FormatNames();
+
+/// "csv; ply of returns; svg of returns, merges and pose": in which formats each table is written.
+std::string FormatsText();
+
+/// "csv of every table but map; kml and gpx of obstacles": where an option can be given.
+std::string PlacesText(Option option);
+
+/// What is wrong with table, format and the options of the request; empty when nothing.
+std::string OutputFault(const Request& request);
+
+}  // namespace lookout::exporter
