@@ -1,19 +1,35 @@
-# Reads the service table (common/bus/services.hpp) and makes a systemd unit for each of its rows.
-#   lookout_make_units(TABLE UNITS_FOLDER)  sets start_order, the names in the order in which a boat starts them
-function(lookout_make_units table units_folder)
+# Reads the service table (common/bus/services.hpp), from which units, lookout-up, scripts, tests and checks of configs are made.
+
+# One text per row that begins as it must: name, role, purpose, watchdog_s and needs, in the order of the data.
+function(lookout_service_rows table rows_variable)
   file(READ ${table} text)
-  string(REGEX MATCHALL "ServiceRow{\"" beginnings "${text}")
-  string(REGEX MATCHALL "ServiceRow{\"[a-z0-9]+\",[ \n]*\"[^\"]+\",[ \n]*[0-9]+,[ \n]*\"(logs|serial|network)\"" rows "${text}")
+  string(REGEX MATCHALL "ServiceRow{[ \n]*\"" beginnings "${text}")
+  set(word "\"[a-z0-9]+\",[ \n]*")
+  string(REGEX MATCHALL "ServiceRow{[ \n]*${word}${word}\"[^\"]+\",[ \n]*[0-9]+,[ \n]*\"(logs|serial|network)\"" rows "${text}")
   list(LENGTH beginnings num_beginnings)
   list(LENGTH rows num_rows)
   if(num_rows EQUAL 0 OR NOT num_rows EQUAL num_beginnings)
-    message(FATAL_ERROR "${table}: ${num_rows} of ${num_beginnings} rows begin with name, purpose, watchdog_s and needs: mend the others")
+    message(FATAL_ERROR "${table}: ${num_rows} of ${num_beginnings} rows begin with name, role, purpose, watchdog_s and needs: mend the others")
   endif()
+  set(${rows_variable} ${rows} PARENT_SCOPE)
+endfunction()
+
+#   lookout_service_names(TABLE NAMES)  sets NAMES to the names of the services, in the order of the data
+function(lookout_service_names table names_variable)
+  lookout_service_rows(${table} rows)
+  list(TRANSFORM rows REPLACE "^ServiceRow{[ \n]*\"([a-z0-9]+)\".*$" "\\1")
+  set(${names_variable} ${rows} PARENT_SCOPE)
+endfunction()
+
+# Makes a systemd unit for each row.
+#   lookout_make_units(TABLE UNITS_FOLDER)  sets start_order, the names in the order in which a boat starts them
+function(lookout_make_units table units_folder)
+  lookout_service_rows(${table} rows)
   list(REVERSE rows)  # the table is in the order of the data, readers start before what they read from
   set(names "")
   set(before_it "")
   foreach(row ${rows})
-    string(REGEX MATCH "\"([a-z0-9]+)\",[ \n]*\"([^\"]+)\",[ \n]*([0-9]+),[ \n]*\"([a-z]+)\"" row "${row}")
+    string(REGEX MATCH "{[ \n]*\"([a-z0-9]+)\",[ \n]*\"[a-z0-9]+\",[ \n]*\"([^\"]+)\",[ \n]*([0-9]+),[ \n]*\"([a-z]+)\"" row "${row}")
     set(name ${CMAKE_MATCH_1})
     set(purpose ${CMAKE_MATCH_2})
     set(watchdog_s ${CMAKE_MATCH_3})

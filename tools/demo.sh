@@ -139,8 +139,7 @@ cleanup() {
 trap cleanup EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
-# Those that take before those that give: nobody misses a first message.
-for service in recorder page plotter tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
+start_all "$live_config" "$work"
 lidar=${live_pids[vlp16]}
 if [ -n "$capture" ]; then
   echo "vlp16 plays $capture (at most 60 s of it)"
@@ -220,7 +219,7 @@ fi
 say "the boat goes on, live: open the page in a browser; Ctrl-C ends it"
 trap cleanup EXIT
 trap 'exit 0' INT TERM
-for service in recorder page plotter tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
+start_all "$live_config" "$work"
 "$bin/lookout-page" --link --config "$live_config"
 [ -z "${LOOKOUT_DEMO_NAMESPACE:-}" ] || echo "But this demo runs in a network of its own, which no browser reaches. As root: ip route add 239.255.76.0/24 dev lo; then again." >&2
 while :; do

@@ -9,7 +9,7 @@ namespace lookout::bus {
 struct Channel {
   std::string_view name;
   std::string_view type;       // struct of package lookout
-  std::string_view publisher;  // the one process that sends it; "all" for HEALTH, "several" for what more than one of them may send
+  std::string_view publisher;  // role of the process that sends it (services.hpp: who fills it); "all" for HEALTH, "several" where more than one may
   double max_rate_hz;          // messages per second, greatest expected
   int queue_depth;             // messages that a subscriber holds before the newest is dropped
   bool is_raw;                 // input from which all else can be computed again
@@ -17,10 +17,10 @@ struct Channel {
 };
 
 // Depths hold two seconds at the greatest rate. A scan in parts, or a scan in rain, comes as a burst.
-inline constexpr Channel kLidarPackets{"LIDAR_PACKETS", "lidar_packets_t", "vlp16", 100, 200, true, true};
-inline constexpr Channel kLidarScan{"LIDAR_SCAN", "lidar_scan_t", "vlp16", 40, 80, false, true};
-inline constexpr Channel kLidarClock{"LIDAR_CLOCK", "lidar_clock_t", "vlp16", 20, 40, false, true};
-inline constexpr Channel kLidarNmea{"LIDAR_NMEA", "lidar_nmea_t", "vlp16", 150, 300, false, true};
+inline constexpr Channel kLidarPackets{"LIDAR_PACKETS", "lidar_packets_t", "lidar", 100, 200, true, true};
+inline constexpr Channel kLidarScan{"LIDAR_SCAN", "lidar_scan_t", "lidar", 40, 80, false, true};
+inline constexpr Channel kLidarClock{"LIDAR_CLOCK", "lidar_clock_t", "lidar", 20, 40, false, true};
+inline constexpr Channel kLidarNmea{"LIDAR_NMEA", "lidar_nmea_t", "lidar", 150, 300, false, true};
 inline constexpr Channel kSegments{"SEGMENTS", "segments_t", "segmenter", 80, 160, false, true};
 inline constexpr Channel kNavRaw{"NAV_RAW", "nav_raw_t", "navigator", 500, 1000, true, true};
 inline constexpr Channel kGnssFix{"GNSS_FIX", "gnss_fix_t", "navigator", 40, 80, false, true};

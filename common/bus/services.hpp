@@ -1,5 +1,6 @@
 // The service table: one row per process of a boat, in the order of the data. Replay, systemd units, lookout-up, doctor, top and tests are made of it
-// (deploy/ServiceTable.cmake reads these lines), the tables in README.md and deploy/README.md are tested against it. Outputs: Channel::publisher.
+// (deploy/ServiceTable.cmake reads these lines), the tables in README.md and deploy/README.md are tested against it. Outputs: the channels whose
+// publisher is the role of the row.
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@ namespace lookout::bus {
 
 struct ServiceRow {
   std::string_view name;  // of its folder below services/; the program is lookout-<name>
+  std::string_view role;  // which channels name as their publisher. A boat with another lidar has the row of its service in place of vlp16's
   std::string_view purpose;
   int watchdog_s;           // silence of the main loop after which systemd ends and restarts it; HEALTH feeds the watchdog once a second
   std::string_view needs;   // logs: writes to /var/lib/lookout; serial: opens serial ports; network: nothing else
@@ -20,15 +22,25 @@ struct ServiceRow {
   std::string_view state;   // what it remembers from message to message, and loses when it restarts
   // nullptr: no more. The recorder reads every channel. HEALTH and RUN_INFO tell of processes, and are in no row.
   std::array<const Channel*, 16> inputs{};
+  bool config_may_be_absent = false;  // <name>.txtpb: then it runs by its defaults
 };
 
 // Readers stand behind the publishers of what they read. A boat starts them in the reverse order, so that no reader misses a first message.
 inline constexpr std::array kServices{
-    ServiceRow{"vlp16", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {}},
-    ServiceRow{"segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan}},
-    ServiceRow{"navigator", "position and attitude of the vessel", 10, "serial", "new config, new run", "filter, latest measurements", {&kLidarNmea}},
-    ServiceRow{"georeferencer", "obstacles on the earth", 10, "network", "checks the config", "poses, waiting scans", {&kSegments, &kPose}},
+    ServiceRow{"vlp16", "lidar", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {}},
+    ServiceRow{"segmenter", "segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan}},
+    ServiceRow{"navigator",
+               "navigator",
+               "position and attitude of the vessel",
+               10,
+               "serial",
+               "new config, new run",
+               "filter, latest measurements",
+               {&kLidarNmea}},
+    ServiceRow{
+        "georeferencer", "georeferencer", "obstacles on the earth", 10, "network", "checks the config", "poses, waiting scans", {&kSegments, &kPose}},
     ServiceRow{"tracker",
+               "tracker",
                "tracks, closest approach and alerts",
                10,
                "network",
@@ -36,25 +48,39 @@ inline constexpr std::array kServices{
                "tracks, land, alerts, poses, waiting scans",
                {&kObstacles, &kSegments, &kLidarScan, &kPose, &kAlertAck, &kOrders}},
     ServiceRow{"plotter",
+               "plotter",
                "targets and alerts for chart plotters, Signal K and NMEA 2000",
                10,
                "serial",
                "checks the config",
                "target numbers, what was told to whom",
-               {&kTracks, &kAlerts, &kPose}},
+               {&kTracks, &kAlerts, &kPose},
+               true},
     ServiceRow{"page",
+               "page",
                "the look-out in a browser",
                10,
                "logs",
                "checks the config",
                "who watches, the last minutes where no recorder runs",
-               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kAlertAck}},
-    ServiceRow{"recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
+               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kAlertAck},
+               true},
+    ServiceRow{"recorder", "recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
+
+constexpr bool Publishes(const ServiceRow& service, const Channel& channel) { return channel.publisher == service.role; }
+
+/// Who publishes the channel, for people: the service that fills the role, or the word of the channel table where none does.
+constexpr std::string_view PublisherName(const Channel& channel) {
+  for (const auto& service : kServices) {
+    if (Publishes(service, channel)) return service.name;
+  }
+  return channel.publisher;
+}
 
 /// The input from which replay computes the service's other outputs, if it publishes one: it holds all that the service consumed.
 constexpr const Channel* RawOutput(const ServiceRow& service) {
   for (const auto& channel : kChannels) {
-    if (channel.is_raw && channel.publisher == service.name) return &channel;
+    if (channel.is_raw && Publishes(service, channel)) return &channel;
   }
   return nullptr;
 }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/bus/services.hpp"
 #include "common/core/recently.hpp"
 #include "common/runtime/process.hpp"
 
@@ -51,7 +52,7 @@ std::string SecondPublisherText(const std::string& channel, std::int64_t num_ref
   const auto* entry = bus::FindChannel(channel);
   return channel + " has two publishers: " + std::to_string(num_refused) +
          " messages of the second were refused; end one of them (lookout-top and lookout-doctor show every " +
-         (entry != nullptr ? std::string(entry->publisher) : "process") + " by host and pid), or give the other boat another LCM address";
+         (entry != nullptr ? std::string(bus::PublisherName(*entry)) : "process") + " by host and pid), or give the other boat another LCM address";
 }
 
 // The value that a share `quantile` of the times does not exceed; -1 without times.

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdlib>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "common/bus/lcm_url.hpp"
+#include "common/bus/services.hpp"
 #include "common/config/boat_folder.hpp"
 #include "common/config/text_config.hpp"
 #include "common/runtime/run_info.hpp"
@@ -68,7 +70,9 @@ Checked CheckConfig(const ServiceProgram<AnyParams>& program, const std::filesys
   config::FaultList faults;
   const auto params = faults.Take([&] { return program.load(config_folder); });
   std::vector<std::string> files{"boat.txtpb", program.name + ".txtpb"};
-  if (program.config_may_be_absent && !std::filesystem::exists(config_folder / files.back())) files.pop_back();
+  const auto row = std::ranges::find(bus::kServices, program.name, &bus::ServiceRow::name);
+  const bool may_be_absent = row != bus::kServices.end() && row->config_may_be_absent;
+  if (may_be_absent && !std::filesystem::exists(config_folder / files.back())) files.pop_back();
   const auto text = faults.Take([&] { return EffectiveConfig(config_folder, files); });
   faults.ThrowIfAny();
   return {*params, *text};

@@ -21,7 +21,6 @@ struct ServiceProgram {
   std::string name;     // "segmenter": program lookout-segmenter, config segmenter.txtpb
   std::string purpose;  // one line for --help
   Hangup hangup = Hangup::kKeepConfig;
-  bool config_may_be_absent = false;                                            // then `load` does without it
   std::function<Params(const std::filesystem::path& config_folder)> load = {};  // throws ConfigError
   std::function<void(Process&, const Params&)> run = {};                        // may set another OnHangup
   std::function<std::string(const Params&)> remarks = {};                       // what --check prints besides the values
@@ -37,8 +36,7 @@ int RunService(int argc, char** argv, const ServiceProgram<AnyParams>& program);
 template <typename Params>
 int ServiceMain(int argc, char** argv, const ServiceProgram<Params>& program) {
   const auto in = [](const AnyParams& params) -> const Params& { return *static_cast<const Params*>(params.get()); };
-  ServiceProgram<AnyParams> any{
-      .name = program.name, .purpose = program.purpose, .hangup = program.hangup, .config_may_be_absent = program.config_may_be_absent};
+  ServiceProgram<AnyParams> any{.name = program.name, .purpose = program.purpose, .hangup = program.hangup};
   any.load = [&](const auto& config_folder) { return std::make_shared<const Params>(program.load(config_folder)); };
   any.run = [&](Process& process, const AnyParams& params) { program.run(process, in(params)); };
   if (program.remarks) any.remarks = [&](const AnyParams& params) { return program.remarks(in(params)); };

@@ -168,7 +168,6 @@ int main(int argc, char** argv) {
       {.name = "page",
        .purpose = "The look-out in a browser, live. With --log FILE...: that of logs; with --link --config DIR: the link to it, for a tablet. "
                   "Each has a --help of its own",
-       .config_may_be_absent = true,
        .load = Load,
        .run = Run,
        .remarks = [](const Config& config) { return page::InWords(config.params); }});

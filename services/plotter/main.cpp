@@ -40,7 +40,6 @@ int main(int argc, char** argv) {
   return lookout::runtime::ServiceMain<lookout::plotter::Params>(argc, argv,
                                                                  {.name = "plotter",
                                                                   .purpose = "TRACKS, ALERTS and POSE in, NMEA 0183, Signal K and NMEA 2000 out",
-                                                                  .config_may_be_absent = true,
                                                                   .load = lookout::plotter::LoadParams,
                                                                   .run = Run,
                                                                   .remarks = lookout::plotter::InWords});

@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { after, before, test } from "node:test";
 import { accessibleTexts, ask, bin, openPage, socketHeaders, source, startBrowser, startProgram, stop, wait } from "./harness.mjs";
 
-const kServices = ["recorder", "page", "tracker", "georeferencer", "segmenter", "navigator", "vlp16"];
+const kServices = execFileSync(`${bin}/lookout-up`, ["--list"], { encoding: "utf8" }).trim().split("\n");
 const kPort = 7668;  // of a network namespace of its own
 const kUrl = `http://127.0.0.1:${kPort}/`;
 

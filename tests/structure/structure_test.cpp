@@ -149,7 +149,7 @@ std::vector<std::string_view> InputsOf(const lookout::bus::ServiceRow& service) 
 std::vector<std::string_view> OutputsOf(const lookout::bus::ServiceRow& service) {
   std::vector<std::string_view> names;
   for (const auto& channel : lookout::bus::kChannels) {
-    if (channel.publisher == service.name) names.push_back(channel.name);
+    if (lookout::bus::Publishes(service, channel)) names.push_back(channel.name);
   }
   return names;
 }
@@ -203,7 +203,20 @@ TEST(Structure, TheServiceTableIsInTheOrderOfTheData) {
       if (input == nullptr || input->is_raw) continue;
       EXPECT_NE(std::ranges::find(above, input->publisher), above.end()) << service.name << " reads " << input->name;
     }
-    above.push_back(service.name);
+    above.push_back(service.role);
+  }
+}
+
+// A channel has one publisher: who takes the place of another takes its row.
+TEST(Structure, EachRoleIsFilledByOneService) {
+  for (const auto& service : lookout::bus::kServices) {
+    EXPECT_EQ(std::ranges::count(lookout::bus::kServices, service.role, &lookout::bus::ServiceRow::role), 1) << service.role;
+  }
+  for (const auto& channel : lookout::bus::kChannels) {
+    const bool is_filled =
+        std::ranges::find(lookout::bus::kServices, channel.publisher, &lookout::bus::ServiceRow::role) != lookout::bus::kServices.end();
+    EXPECT_TRUE(is_filled || lookout::bus::HasSeveralPublishers(channel) || channel.publisher == "sim")
+        << channel.name << " of " << channel.publisher;
   }
 }
 

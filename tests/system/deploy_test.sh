@@ -79,7 +79,7 @@ lookout_make_units(${WORK}/services.hpp ${WORK}/units)
 message("start order: ${start_order}")
 TEXT
 units() { cmake -DSOURCE="$source_folder" -DWORK="$work" -P "$work/units.cmake" 2>&1; }
-sed 's/^    ServiceRow{"recorder"/    ServiceRow{"fuser", "obstacles of two lidars", 12,\n               "network", "none", "none", {\&kObstacles}},\n&/' "$source_folder/common/bus/services.hpp" >"$work/services.hpp"
+sed 's/^    ServiceRow{"recorder"/    ServiceRow{"fuser", "fuser", "obstacles of two lidars", 12,\n               "network", "none", "none", {\&kObstacles}},\n&/' "$source_folder/common/bus/services.hpp" >"$work/services.hpp"
 grep -qxF 'start order: recorder;fuser;page;plotter;tracker;georeferencer;navigator;segmenter;vlp16' <(units) || { units; fail "the start order with a row more"; }
 grep -qxF 'Description=Lookout fuser: obstacles of two lidars' "$work/units/lookout-fuser.service" || fail "a row more has no unit"
 grep -qxF 'WatchdogSec=12s' "$work/units/lookout-fuser.service" || fail "the watchdog of a row more"
@@ -95,7 +95,9 @@ cp -r "$source_folder/config/demo" "$config"
 "$up" --help >/dev/null || fail "--help"
 "$up" --version | grep -q '^lookout-up [0-9]' || fail "--version"
 "$up" --config "$config" --check >"$work/check.txt" || fail "--check of the demo"
-for name in recorder page plotter tracker georeferencer segmenter navigator vlp16; do
+mapfile -t names < <("$up" --list)
+[ "${names[*]}" = "recorder page plotter tracker georeferencer navigator segmenter vlp16" ] || fail "--list: ${names[*]}"
+for name in "${names[@]}"; do
   grep -q "^$name: ok\$" "$work/check.txt" || fail "--check does not tell of $name"
 done
 # It had 420 lines, with boat.txtpb once for each process.
@@ -108,7 +110,7 @@ done
 grep -q '^name: "demo"' "$work/values.txt" || fail "--check --values has no values"
 code=0; "$up" --config "$config" --values >/dev/null 2>&1 || code=$?; [ "$code" -eq 2 ] || fail "--values alone: exit code $code"
 # A folder of boats names them, in every program.
-for program in up vlp16 segmenter navigator georeferencer tracker plotter page recorder doctor replay; do
+for program in up "${names[@]}" doctor replay; do
   code=0; "$build_folder/bin/lookout-$program" --config "$source_folder/config" --check >"$work/boats.txt" 2>&1 || code=$?
   [ "$code" -eq 2 ] || fail "lookout-$program with a folder of boats: exit code $code"
   grep -q "no boat's folder.* holds boats: .*config/catabot, .*config/demo" "$work/boats.txt" || { cat "$work/boats.txt"; fail "lookout-$program does not name the boats"; }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "tests/support/live_test.hpp"
 
@@ -59,7 +60,7 @@ TEST_F(Doctor, SeesASimulatedBoatByItselfAndThroughItsProcesses) {
     if (message.num_obstacles > 0 && message.obstacles[0].status == obstacle_t::STATUS_OK) ++num_placed;
   });
   lcm.HandleOnce(milliseconds(0));  // joins LCM's group
-  for (const auto& service : {"recorder", "page", "plotter", "tracker", "georeferencer", "segmenter", "navigator", "vlp16"}) Start(service);
+  for (const auto& service : bus::StartOrder()) Start(service);
   const auto deadline = std::chrono::steady_clock::now() + seconds(20);
   while (num_placed < 3 && std::chrono::steady_clock::now() < deadline) lcm.HandleOnce(milliseconds(50));
   ASSERT_GE(num_placed, 3);

@@ -31,7 +31,7 @@ simulate() { "$bin/lookout-sim" --config config --scene lake --seed 1 --seconds 
 
 case $by in
   demo)
-    for service in recorder page plotter tracker georeferencer segmenter navigator vlp16; do start "$service" config "$service.out"; done
+    start_all config .
     simulate
     stop_all
     ;;

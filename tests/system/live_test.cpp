@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <ranges>
 #include <string>
 #include <thread>
 #include <vector>
@@ -50,7 +51,7 @@ class Live : public LiveTest {
 
   // Sources end first, so that what they send at their end still finds its takers.
   void StopAll() {
-    for (const auto& service : {"vlp16", "navigator", "segmenter", "georeferencer", "tracker", "plotter", "page", "recorder"}) {
+    for (const auto& service : kServices | std::views::reverse) {
       std::this_thread::sleep_for(milliseconds(300));
       EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
     }

@@ -67,7 +67,7 @@ for file in returns.csv eval.txt info.txt replay.txt check.txt; do [ -s "$work/C
 # Live: programs, config and logs in the odd folder.
 mkdir "$odd/bin" "$odd/libexec"
 cp -r "$2/libexec/lookout" "$odd/libexec/"
-for name in recorder page plotter tracker georeferencer segmenter navigator vlp16; do
+for name in $("$bin/lookout-up" --list); do
   ln "$bin/lookout-$name" "$odd/bin/" 2>/dev/null || cp "$bin/lookout-$name" "$odd/bin/"
 done
 cp "$bin/lookout-up" "$odd/bin/"

@@ -52,10 +52,16 @@ void CountOther(const Datagram& datagram, OtherPort& seen) {
 
 // They subscribe as they are made; the sink subscribes last, so that it sees a message after the services did.
 struct Chain::Running {
-  Running(bus::MemoryBus& memory_bus, const std::filesystem::path& config_folder, const StageInput& input, const StageFactory& factory)
-      : service(factory.service), bus(memory_bus), stage(factory.make(bus, config_folder, input)) {}
+  Running(bus::MemoryBus& memory_bus, const std::filesystem::path& config_folder, const bus::ServiceRow& service_row, const Plan& plan,
+          const StageFactory& factory)
+      : row(service_row), bus(memory_bus), stage(factory.make(bus, config_folder, {ReadsRaw(row, plan), plan})) {}
 
-  std::string service;
+  static bool ReadsRaw(const bus::ServiceRow& row, const Plan& plan) {
+    const auto* const raw = bus::RawOutput(row);
+    return raw != nullptr && plan.Reads(raw->name);
+  }
+
+  bus::ServiceRow row;
   StageBus bus;
   std::unique_ptr<Stage> stage;
   std::chrono::nanoseconds time{0};  // without that of its handlers, which the bus measures
@@ -71,10 +77,9 @@ void CheckConfig(const std::filesystem::path& config_folder) {
 Chain::Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink sink, const std::vector<StageFactory>& factories)
     : sink_(std::move(sink)), read_(plan.read) {
   for (const auto& service : plan.services) {
+    const auto& row = *std::ranges::find(plan.table, service, &bus::ServiceRow::name);
     const auto& factory = *std::ranges::find(factories, service, &StageFactory::service);
-    const bool reads_raw = std::ranges::any_of(
-        bus::kChannels, [&](const bus::Channel& channel) { return channel.is_raw && channel.publisher == service && plan.Reads(channel.name); });
-    running_.push_back(std::make_unique<Running>(bus_, config_folder, StageInput{reads_raw, plan}, factory));
+    running_.push_back(std::make_unique<Running>(bus_, config_folder, row, plan, factory));
   }
   bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) {
     auto digest = digests_.find(channel);
@@ -141,7 +146,7 @@ std::vector<std::pair<std::string, double>> Chain::StageTimes() const {
   for (const auto& running : running_) {
     auto time = running->time;
     for (const auto& [channel, traffic] : running->bus.input_traffic()) time += traffic.total_handling_time;
-    times.emplace_back(running->service, ToSeconds(time));
+    times.emplace_back(running->row.name, ToSeconds(time));
   }
   return times;
 }
@@ -151,7 +156,7 @@ std::vector<std::pair<std::string, std::int64_t>> Chain::Counters() const {
   std::map<std::string, std::int64_t> of_channels;  // of several readers of a channel each has lost the same
   for (const auto& running : running_) {
     for (const auto& counter : running->stage->Report().counters) {
-      if (counter.count != 0) counters.emplace_back(running->service + "." + std::string(counter.name), counter.count);
+      if (counter.count != 0) counters.emplace_back(std::string(running->row.name) + "." + std::string(counter.name), counter.count);
     }
     for (const auto& [channel, traffic] : running->bus.input_traffic()) {
       auto& num_undecodable = of_channels[channel + ".undecodable"];
@@ -181,8 +186,8 @@ std::vector<std::pair<std::string, std::int64_t>> Chain::Gaps() const {
   return gaps;
 }
 
-const Stage* Chain::Find(std::string_view service) const {
-  const auto found = std::ranges::find_if(running_, [service](const auto& running) { return running->service == service; });
+const Stage* Chain::FindPublisher(const bus::Channel& channel) const {
+  const auto found = std::ranges::find_if(running_, [&](const auto& running) { return bus::Publishes(running->row, channel); });
   return found == running_.end() ? nullptr : (*found)->stage.get();
 }
 

@@ -79,8 +79,8 @@ class Chain {
   /// Datagrams for which no service has the port.
   const OtherPorts& other_ports() const { return other_ports_; }
 
-  /// nullptr: it does not run.
-  const Stage* Find(std::string_view service) const;
+  /// The service that publishes the channel; nullptr: it does not run.
+  const Stage* FindPublisher(const bus::Channel& channel) const;
 
  private:
   struct Running;

@@ -227,7 +227,7 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
   inspection.is_text_logs = num_text_logs == files.size();
   try {
     inspection.plan = num_logs == 0 ? MakeCapturePlan(request) : MakeLogPlan(request, present);
-    if (inspection.is_logs && inspection.plan.Runs(bus::kAlerts.publisher)) inspection.plan.script = ReadScript(files, show);
+    if (inspection.is_logs && inspection.plan.Publishes(bus::kAlerts)) inspection.plan.script = ReadScript(files, show);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(files.front().string() + ": " + error.what());
   }

@@ -183,12 +183,12 @@ lookout::replay::Seen SeenIn(const Options& options, const lookout::replay::Insp
   Seen seen;
   seen.input = inspection.is_logs ? Seen::Input::kLog : inspection.is_text_logs ? Seen::Input::kTextLog : Seen::Input::kCapture;
   const auto& plan = inspection.plan;
-  seen.wants_scans = plan.Runs(lookout::bus::kLidarScan.publisher);
-  seen.wants_poses = plan.Runs(lookout::bus::kPose.publisher);
-  seen.wants_tracks = plan.Runs(lookout::bus::kTracks.publisher);
+  seen.wants_scans = plan.Publishes(lookout::bus::kLidarScan);
+  seen.wants_poses = plan.Publishes(lookout::bus::kPose);
+  seen.wants_tracks = plan.Publishes(lookout::bus::kTracks);
   seen.data_port = lookout::vlp16::LoadParams(options.config_folder).data_port;
   for (const auto& [port, source] : lookout::navigator::LoadParams(options.config_folder).source_of_port) seen.sentence_ports.push_back(port);
-  const auto* const lidar = chain.Find(lookout::bus::kLidarScan.publisher);
+  const auto* const lidar = chain.FindPublisher(lookout::bus::kLidarScan);
   seen.num_lidar_packets = inspection.is_logs || lidar == nullptr ? CountOf(chain, lookout::bus::kLidarPackets) : lidar->num_measured();
   seen.num_sentences = watched.num_sentences;
   seen.num_scans = CountOf(chain, seen.wants_scans ? lookout::bus::kLidarClock : lookout::bus::kObstacles);
@@ -244,8 +244,8 @@ void Replay(const Options& options) {
   spdlog::info("{} events, {} scans, {:.3f} s in {:.3f} s: {:.0f} times real time; digests {:.3f} s more", summary.num_events, num_scans,
                lookout::ToSeconds(chain.span()), elapsed_s, lookout::ToSeconds(chain.span()) / elapsed_s, digest_s);
 
-  const auto* const lidar = chain.Find(lookout::bus::kLidarScan.publisher);
-  const auto* const navigation = chain.Find(lookout::bus::kPose.publisher);
+  const auto* const lidar = chain.FindPublisher(lookout::bus::kLidarScan);
+  const auto* const navigation = chain.FindPublisher(lookout::bus::kPose);
   if (!inspection.is_logs && CountOf(chain, lookout::bus::kLidarPackets) == 0 && (navigation == nullptr || navigation->num_measured() == 0)) {
     const auto ports = lookout::replay::PortsText(chain.other_ports());
     throw std::runtime_error("the input holds no lidar packet and no sentence on the ports of the config" +

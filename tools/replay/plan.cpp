@@ -23,6 +23,14 @@ std::vector<const bus::Channel*> Inputs(const bus::ServiceRow& service) {
   return inputs;
 }
 
+std::vector<std::string_view> PublishersOf(const bus::Channel& channel, const ServiceRows& services) {
+  std::vector<std::string_view> names;
+  for (const auto& service : services) {
+    if (bus::Publishes(service, channel)) names.push_back(service.name);
+  }
+  return names;
+}
+
 // Each once, in the order of the channel table; what it does not hold stands last.
 std::vector<std::string> InTableOrder(std::vector<const bus::Channel*> channels) {
   const auto place = [](const bus::Channel* channel) { return std::ranges::find(bus::kChannels, channel->name, &bus::Channel::name); };
@@ -40,7 +48,9 @@ void AddUpstream(std::string_view name, const ServiceRows& services, std::vector
   if (row == services.end() || Holds(stopped, name)) return;
   stopped.emplace_back(name);
   if (bus::RawOutput(*row) != nullptr) return;
-  for (const auto* input : Inputs(*row)) AddUpstream(input->publisher, services, stopped);
+  for (const auto* input : Inputs(*row)) {
+    for (const auto publisher : PublishersOf(*input, services)) AddUpstream(publisher, services, stopped);
+  }
 }
 
 // Services that do not run with --from this channel.
@@ -48,7 +58,8 @@ std::vector<std::string> StoppedBy(const std::string& from, const ServiceRows& s
   std::vector<std::string> stopped;
   for (const auto& service : services) {
     for (const auto* input : Inputs(service)) {
-      if (input->name == from && !input->is_raw) AddUpstream(input->publisher, services, stopped);
+      if (input->name != from || input->is_raw) continue;
+      for (const auto publisher : PublishersOf(*input, services)) AddUpstream(publisher, services, stopped);
     }
   }
   return stopped;
@@ -56,7 +67,7 @@ std::vector<std::string> StoppedBy(const std::string& from, const ServiceRows& s
 
 // Which services run, with no word yet about what they read.
 Plan Running(const Request& request, const ServiceRows& services) {
-  Plan plan{.services = ServiceNames(services)};
+  Plan plan{.services = ServiceNames(services), .table = services};
   for (const auto& name : request.only) {
     if (!Holds(plan.services, name)) throw RequestError(fmt::format("--only {}: is none of {}", name, fmt::join(plan.services, ", ")));
   }
@@ -91,7 +102,7 @@ void AddUnmet(const Request& request, const ChannelSet& present, const ServiceRo
       continue;
     }
     for (const auto* input : Inputs(service)) {
-      if (!plan.Runs(input->publisher)) unmet.push_back(input);
+      if (!plan.Publishes(*input)) unmet.push_back(input);
     }
   }
   plan.read = InTableOrder(unmet);
@@ -104,7 +115,8 @@ void AddUnmet(const Request& request, const ChannelSet& present, const ServiceRo
 std::vector<std::string> FedServices(const Plan& plan, const ChannelSet& present, const ServiceRows& services) {
   std::vector<std::string> fed;
   const auto is_met = [&](const bus::Channel* input) {
-    return plan.Runs(input->publisher) ? Holds(fed, input->publisher) : present.contains(input->name);
+    const auto is_fed = [&](std::string_view publisher) { return Holds(fed, publisher); };
+    return plan.Publishes(*input) ? std::ranges::any_of(PublishersOf(*input, services), is_fed) : present.contains(input->name);
   };
   for (const auto& service : services) {
     if (!plan.Runs(service.name)) continue;
@@ -120,7 +132,10 @@ std::vector<std::string> FedServices(const Plan& plan, const ChannelSet& present
 
 bool Plan::Runs(std::string_view service) const { return Holds(services, service); }
 bool Plan::Reads(std::string_view channel) const { return Holds(read, channel); }
-bool Plan::Gives(const bus::Channel& channel) const { return Runs(channel.publisher) || (Reads(channel.name) && !Holds(absent, channel.name)); }
+bool Plan::Publishes(const bus::Channel& channel) const {
+  return std::ranges::any_of(PublishersOf(channel, table), [this](std::string_view service) { return Runs(service); });
+}
+bool Plan::Gives(const bus::Channel& channel) const { return Publishes(channel) || (Reads(channel.name) && !Holds(absent, channel.name)); }
 
 const ServiceRows& ReplayedServices() {
   static const ServiceRows kRows = [] {
@@ -184,7 +199,7 @@ Plan MakeCapturePlan(const Request& request, const ServiceRows& services) {
   for (const auto& service : services) {
     if (!plan.Runs(service.name) || Holds(fed, service.name)) continue;
     std::vector<std::string_view> publishers;
-    for (const auto* input : Inputs(service)) publishers.push_back(input->publisher);
+    for (const auto* input : Inputs(service)) std::ranges::copy(PublishersOf(*input, services), std::back_inserter(publishers));
     throw RequestError(fmt::format("--only {}: a capture needs {} too", service.name, fmt::join(publishers, " or ")));
   }
   return plan;

@@ -41,11 +41,14 @@ class RequestError : public std::invalid_argument {
 /// What runs, and where the data begin. By default: all services, fed with the datagrams of captures.
 struct Plan {
   std::vector<std::string> services = ServiceNames();  // that run, in the order of the data
+  ServiceRows table = ReplayedServices();              // out of which they were chosen
   std::vector<std::string> read = {};                  // channels that come out of the logs, in the order of the channel table
   std::vector<std::string> absent = {};                // of these, what the logs do not hold
   std::optional<tracker::Script> script = {};          // what the tracker did live, where the logs tell
 
   bool Runs(std::string_view service) const;
+  /// Whether a service that runs publishes the channel.
+  bool Publishes(const bus::Channel& channel) const;
   bool Reads(std::string_view channel) const;
   /// Whether messages of a channel can come: a service that runs publishes it, or the logs hold it.
   bool Gives(const bus::Channel& channel) const;

@@ -44,14 +44,16 @@ class Vlp16Stage final : public Stage {
   vlp16::Service service_;
 };
 
-class SegmenterStage final : public Stage {
+// A service that computes what it publishes from messages alone, and holds nothing at its end.
+template <typename Service, auto load>
+class PlainStage final : public Stage {
  public:
-  SegmenterStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& /*input*/) : service_(bus, segmenter::LoadParams(config_folder)) {}
+  PlainStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& /*input*/) : service_(bus, load(config_folder)) {}
 
   HealthReport Report() const override { return service_.Report(); }
 
  private:
-  segmenter::Service service_;
+  Service service_;
 };
 
 class NavigatorStage final : public Stage {
@@ -137,7 +139,7 @@ std::unique_ptr<Stage> Make(bus::Bus& bus, const fs::path& config_folder, const 
 const std::vector<StageFactory>& StageFactories() {
   static const std::vector<StageFactory> kFactories{
       {"vlp16", [](const fs::path& folder) { vlp16::LoadParams(folder); }, Make<Vlp16Stage>},
-      {"segmenter", [](const fs::path& folder) { segmenter::LoadParams(folder); }, Make<SegmenterStage>},
+      {"segmenter", [](const fs::path& folder) { segmenter::LoadParams(folder); }, Make<PlainStage<segmenter::Service, segmenter::LoadParams>>},
       {"navigator", [](const fs::path& folder) { navigator::LoadParams(folder); }, Make<NavigatorStage>},
       {"georeferencer", [](const fs::path& folder) { georeferencer::LoadParams(folder); }, Make<GeoreferencerStage>},
       {"tracker", [](const fs::path& folder) { tracker::LoadParams(folder); }, Make<TrackerStage>}};

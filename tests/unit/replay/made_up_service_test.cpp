@@ -35,9 +35,15 @@ class FuserStage final : public Stage {
 // Fuser, and the painter that reads what it publishes.
 ServiceRows WithFuser() {
   ServiceRows rows = ReplayedServices();
-  rows.push_back(
-      {"fuser", "fused poses", 10, "network", "checks the config", "poses", {&bus::kObstacles, &bus::kSegments, &bus::kLidarScan, &bus::kPose}});
-  rows.push_back({"painter", "pictures", 10, "network", "checks the config", "none", {&kFused}});
+  rows.push_back({"fuser",
+                  "fuser",
+                  "fused poses",
+                  10,
+                  "network",
+                  "checks the config",
+                  "poses",
+                  {&bus::kObstacles, &bus::kSegments, &bus::kLidarScan, &bus::kPose}});
+  rows.push_back({"painter", "painter", "pictures", 10, "network", "checks the config", "none", {&kFused}});
   return rows;
 }
 
@@ -100,13 +106,36 @@ TEST(MadeUpService, RunsBehindWhatItReads) {
   EXPECT_EQ(std::ranges::find(counters, std::pair<std::string, std::int64_t>("fuser.raw", 1)), counters.end());
 }
 
+// Channels name roles: a boat with another lidar has the row of another service, and no other row nor the channel table changes.
+TEST(MadeUpService, FillsTheRoleOfAnother) {
+  ServiceRows rows = ReplayedServices();
+  ASSERT_EQ(rows.front().role, bus::kLidarScan.publisher);
+  rows.front().name = "lidar32";
+  EXPECT_EQ(InWords(MakeLogPlan({}, kDayWithFused, rows)),
+            "ran: lidar32, segmenter, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(InWords(MakeLogPlan({.from = {"LIDAR_SCAN"}}, kDayWithFused, rows)),
+            "ran: segmenter, navigator, georeferencer, tracker\nread: LIDAR_SCAN, NAV_RAW, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(InWords(MakeLogPlan({.only = {"lidar32"}}, kDayWithFused, rows)), "ran: lidar32\nread: LIDAR_PACKETS\n");
+  EXPECT_THROW(MakeLogPlan({.from = {"LIDAR_SCAN"}, .only = {"lidar32"}}, kDayWithFused, rows), RequestError);
+  const auto plan = MakeCapturePlan({.only = {"lidar32", "segmenter"}}, rows);
+  EXPECT_TRUE(plan.Publishes(bus::kLidarScan));
+  EXPECT_TRUE(plan.Gives(bus::kSegments));
+  EXPECT_FALSE(plan.Publishes(bus::kPose));
+  try {
+    MakeCapturePlan({.only = {"segmenter"}}, rows);
+    FAIL() << "a segmenter without a lidar is planned";
+  } catch (const RequestError& error) {
+    EXPECT_STREQ(error.what(), "--only segmenter: a capture needs lidar32 too");
+  }
+}
+
 // What a boat computes from its measurements replay computes too.
 TEST(MadeUpService, WouldBeMissedWithoutAFactory) {
   for (const auto& channel : bus::kChannels) {
-    const bool is_of_the_table = std::ranges::find(bus::kServices, channel.publisher, &bus::ServiceRow::name) != bus::kServices.end();
+    const bool is_of_the_table = std::ranges::find(bus::kServices, channel.publisher, &bus::ServiceRow::role) != bus::kServices.end();
     if (!channel.is_replayed || !is_of_the_table) continue;
     const auto& rows = ReplayedServices();
-    EXPECT_NE(std::ranges::find(rows, channel.publisher, &bus::ServiceRow::name), rows.end()) << "no factory in tools/replay: " << channel.publisher;
+    EXPECT_NE(std::ranges::find(rows, channel.publisher, &bus::ServiceRow::role), rows.end()) << "no factory in tools/replay: " << channel.publisher;
   }
   for (const auto& factory : StageFactories()) {
     EXPECT_NE(std::ranges::find(bus::kServices, factory.service, &bus::ServiceRow::name), bus::kServices.end()) << factory.service;
