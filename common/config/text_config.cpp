@@ -18,19 +18,9 @@
 #include <string_view>
 #include <utility>
 
+#include "common/config/schemas.hpp"
 #include "common/config/text_salvage.hpp"
-#include "config/schema/boat.pb.h"
-#include "config/schema/evidence.pb.h"
-#include "config/schema/georeferencer.pb.h"
-#include "config/schema/navigator.pb.h"
 #include "config/schema/options.pb.h"
-#include "config/schema/page.pb.h"
-#include "config/schema/plotter.pb.h"
-#include "config/schema/recorder.pb.h"
-#include "config/schema/scene.pb.h"
-#include "config/schema/segmenter.pb.h"
-#include "config/schema/tracker.pb.h"
-#include "config/schema/vlp16.pb.h"
 
 namespace lookout::config {
 
@@ -51,14 +41,10 @@ std::string NumberText(double value) {
   return text.data();
 }
 
-// The message of a schema file. Naming the descriptors here also makes the linker keep them.
+// The message of a schema file.
 const Descriptor* FindSchema(const std::string& schema_file) {
-  for (const auto* descriptor :
-       {Boat::descriptor(), Vlp16::descriptor(), Segmenter::descriptor(), Navigator::descriptor(), Georeferencer::descriptor(), Tracker::descriptor(),
-        Plotter::descriptor(), Page::descriptor(), Recorder::descriptor(), Scene::descriptor(), Evidence::descriptor()}) {
-    if (descriptor->file()->name() == schema_file) return descriptor;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(Schemas(), schema_file, [](const Descriptor* descriptor) { return descriptor->file()->name(); });
+  return found == Schemas().end() ? nullptr : *found;
 }
 
 // More than these help nobody, and a text of nonsense has thousands.

@@ -4,18 +4,7 @@
 #include <cstdlib>
 
 #include "common/bus/decode.hpp"
-#include "lookout/attitude_t.hpp"
-#include "lookout/gnss_fix_t.hpp"
-#include "lookout/health_t.hpp"
-#include "lookout/lidar_clock_t.hpp"
-#include "lookout/lidar_nmea_t.hpp"
-#include "lookout/lidar_packets_t.hpp"
-#include "lookout/lidar_scan_t.hpp"
-#include "lookout/nav_raw_t.hpp"
-#include "lookout/obstacles_t.hpp"
-#include "lookout/pose_t.hpp"
-#include "lookout/run_info_t.hpp"
-#include "lookout/segments_t.hpp"
+#include "tests/support/wire_types.hpp"
 
 namespace {
 
@@ -31,48 +20,22 @@ void DecodeAs(lookout::Bytes body) {
   if (message && message->getEncodedSize() != static_cast<int>(bytes.size())) std::abort();
 }
 
+int NumTypes() {
+  int num_types = 0;
+  lookout::ForEachChannelType([&num_types](const auto&) { ++num_types; });
+  return num_types;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const lookout::Bytes body(data + 1, size - 1);
-  switch (data[0] % 12) {
-    case 0:
-      DecodeAs<lookout::lidar_packets_t>(body);
-      break;
-    case 1:
-      DecodeAs<lookout::lidar_scan_t>(body);
-      break;
-    case 2:
-      DecodeAs<lookout::lidar_clock_t>(body);
-      break;
-    case 3:
-      DecodeAs<lookout::lidar_nmea_t>(body);
-      break;
-    case 4:
-      DecodeAs<lookout::segments_t>(body);
-      break;
-    case 5:
-      DecodeAs<lookout::nav_raw_t>(body);
-      break;
-    case 6:
-      DecodeAs<lookout::gnss_fix_t>(body);
-      break;
-    case 7:
-      DecodeAs<lookout::attitude_t>(body);
-      break;
-    case 8:
-      DecodeAs<lookout::pose_t>(body);
-      break;
-    case 9:
-      DecodeAs<lookout::obstacles_t>(body);
-      break;
-    case 10:
-      DecodeAs<lookout::health_t>(body);
-      break;
-    default:
-      DecodeAs<lookout::run_info_t>(body);
-      break;
-  }
+  static const int kNumTypes = NumTypes();
+  const int chosen = data[0] % kNumTypes;
+  int type = 0;
+  lookout::ForEachChannelType([&]<typename T>(T) {
+    if (type++ == chosen) DecodeAs<T>(body);
+  });
   return 0;
 }

@@ -23,18 +23,18 @@
 #include <system_error>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/bus/services.hpp"
 #include "common/config/text_config.hpp"
 #include "common/io/disk_reserve.hpp"
 #include "common/runtime/process.hpp"
-#include "services/georeferencer/params.hpp"
 #include "services/page/params.hpp"
 #include "services/page/tiles.hpp"
 #include "services/page/token.hpp"
 #include "services/plotter/params.hpp"
 #include "services/recorder/params.hpp"
-#include "services/segmenter/params.hpp"
 #include "services/tracker/params.hpp"
 #include "services/vlp16/sources.hpp"
+#include "tools/doctor/config_checks.hpp"
 
 namespace lookout::doctor {
 
@@ -112,7 +112,7 @@ fs::path Existing(fs::path folder) {
 
 ConfigSeen ReadConfig(const fs::path& config_folder) {
   ConfigSeen seen;
-  const auto check = [&](const std::string& file_name, const auto& load) {
+  const auto check = [&](const std::string& file_name, const std::function<void()>& load) {
     config::FaultList found;
     // By itself first: a process whose boat.txtpb is wrong looks no further.
     found.Try([&] { config::EffectiveTextOfFile(config_folder / file_name); });
@@ -126,21 +126,21 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
     }
   };
   check("boat.txtpb", [&] { seen.boat = config::LoadBoat(config_folder); });
-  check("vlp16.txtpb", [&] { seen.lidar = vlp16::LoadChecked(config_folder); });
-  check("segmenter.txtpb", [&] { segmenter::LoadParams(config_folder); });
-  check("navigator.txtpb", [&] { seen.navigation = navigator::LoadParams(config_folder); });
-  check("georeferencer.txtpb", [&] { georeferencer::LoadParams(config_folder); });
-  check("tracker.txtpb", [&] { seen.tracker = tracker::LoadParams(config_folder); });
   seen.has_plotter_outputs = false;
-  if (fs::exists(config_folder / "plotter.txtpb")) {
-    check("plotter.txtpb", [&] { seen.has_plotter_outputs = !plotter::LoadParams(config_folder).outputs.empty(); });
+  for (const auto& service : ConfigChecks()) {
+    const auto file_name = std::string(service.service) + ".txtpb";
+    const auto& row = *std::ranges::find(bus::kServices, service.service, &bus::ServiceRow::name);
+    if (row.config_may_be_absent && !fs::exists(config_folder / file_name)) continue;
+    check(file_name, [&] { service.load(config_folder); });
   }
-  if (fs::exists(config_folder / "page.txtpb")) {
-    check("page.txtpb", [&] { seen.page = page::LoadParams(config_folder); });
-  } else {
-    config::FaultList().Try([&] { seen.page = page::LoadParams(config_folder); });
-  }
-  check("recorder.txtpb", [&] {
+  check("vlp16.txtpb", [&] { seen.lidar = vlp16::LoadChecked(config_folder); });
+  // What other findings are made of. Faults of these files are told already.
+  const auto look = [](const std::function<void()>& load) { config::FaultList().Try(load); };
+  look([&] { seen.navigation = navigator::LoadParams(config_folder); });
+  look([&] { seen.tracker = tracker::LoadParams(config_folder); });
+  look([&] { seen.has_plotter_outputs = !plotter::LoadParams(config_folder).outputs.empty(); });
+  look([&] { seen.page = page::LoadParams(config_folder); });
+  look([&] {
     const auto params = recorder::LoadParams(config_folder);
     seen.log_folder = params.log_folder;
     seen.log_reserve_bytes = params.reserve_bytes;

@@ -12,6 +12,7 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/memory_bus.hpp"
+#include "common/bus/services.hpp"
 #include "common/core/utime.hpp"
 #include "common/io/source.hpp"
 #include "common/io/udp_receiver.hpp"
@@ -37,6 +38,9 @@ constexpr std::chrono::milliseconds kHealthWait(1500);
 constexpr std::chrono::milliseconds kPoll(5);
 // lcm-log: sync word, number, time, two lengths.
 constexpr std::int64_t kEventHeaderBytes = 28;
+
+// Whichever service fills the role on this boat.
+std::string LidarService() { return std::string(bus::PublisherName(bus::kLidarScan)); }
 
 // Taken from one source before the others get their turn: 100 ms of packets in dual return.
 constexpr int kMaxDatagramsPerPoll = 150;
@@ -143,7 +147,7 @@ class Watcher {
     if (seen_.lidar.via == Via::kBus && seen_.lidar.num_packets > 0) {
       seen_.disk.rate_bytes_per_s = static_cast<double>(notes_.num_log_bytes()) / seen_.watched_s;
     }
-    if (const auto* health = seen_.LastHealth("vlp16")) seen_.lidar.complaint = health->reason;
+    if (const auto* health = seen_.LastHealth(LidarService())) seen_.lidar.complaint = health->reason;
     if (const auto* health = seen_.LastHealth("navigator")) seen_.navigation.complaint = health->reason;
   }
 
@@ -164,7 +168,7 @@ class Watcher {
 
   void OpenOwnSources() {
     const auto& config = seen_.config;
-    if (seen_.processes.contains("vlp16")) {
+    if (seen_.processes.contains(LidarService())) {
       seen_.lidar.via = Via::kBus;
     } else if (config.lidar &&
                (config.lidar->sources.kind == vlp16::Sources::Kind::kUdp || config.lidar->sources.kind == vlp16::Sources::Kind::kInterface)) {
@@ -324,7 +328,7 @@ void Notes::OnHealth(const health_t& message) {
 void Watch(Observations& seen, std::chrono::milliseconds duration) { Watcher(seen).Run(duration); }
 
 void ForgivePortsOfProcesses(Observations& seen) {
-  if (!seen.lidar.fault.empty() && seen.processes.contains("vlp16")) {
+  if (!seen.lidar.fault.empty() && seen.processes.contains(LidarService())) {
     seen.lidar.fault.clear();
     seen.lidar.via = Via::kBus;
   }

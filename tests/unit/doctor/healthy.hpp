@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "common/bus/services.hpp"
 #include "common/core/angles.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "tests/support/files.hpp"
@@ -41,7 +42,7 @@ inline InterfaceSeen Interface(const std::string& name, const std::string& addre
   return {name, io::ParseIpAddress(address), prefix_bits, true, name == "lo"};
 }
 
-/// config/demo, a lidar locked to PPS, RTK, PASHR, and the five processes.
+/// config/demo, a lidar locked to PPS, RTK, PASHR, and all processes.
 inline Observations Healthy() {
   Observations seen;
   seen.config = ReadConfig(support::kDemoConfig.string());
@@ -96,8 +97,7 @@ inline Observations Healthy() {
   pose.heading_rad = 1.0;
   navigation.pose = pose;
 
-  for (const auto* name : {"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "plotter", "page", "recorder"})
-    seen.processes[name].push_back(Running(name));
+  for (const auto& service : bus::kServices) seen.processes[std::string(service.name)].push_back(Running(std::string(service.name)));
   seen.obstacles = {50, 500, 500, 0};
   seen.look_out = {50, 12, 3, seen.end, alerts_t{}, seen.end};
   seen.disk.folder = "/logs";
