@@ -147,35 +147,35 @@ while read -r file; do
 done <"$work/touched.txt"
 
 # --- What follows ---
-cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo >"$work/configure.txt" 2>&1 || { tail -n 30 "$work/configure.txt"; fail "the copy cannot be configured"; }
-[[ "$(build/bin/lookout-up --list | tr '\n' ' ')" == *"plotter echo tracker "* ]] || fail "it does not start where its row says: $(build/bin/lookout-up --list)"
-grep -q '^ExecStart=.*lookout-echo ' build/deploy/systemd/lookout-echo.service || fail "it has no unit"
+cmake --preset release >"$work/configure.txt" 2>&1 || { tail -n 30 "$work/configure.txt"; fail "the copy cannot be configured"; }
+[[ "$(build/release/bin/lookout-up --list | tr '\n' ' ')" == *"plotter echo tracker "* ]] || fail "it does not start where its row says: $(build/release/bin/lookout-up --list)"
+grep -q '^ExecStart=.*lookout-echo ' build/release/deploy/systemd/lookout-echo.service || fail "it has no unit"
 for made in tools/doctor/config_checks.cpp:echo::LoadParams common/schemas.cpp:Echo::descriptor generated/tests/support/wire_types.hpp:'call(echo_t{})' \
   generated/tests/support/wire_types.hpp:'message.pose_seq.resize(2)' generated/tools/diff/fields.hpp:'"pose_seq"' common/schema.cpp:echo_t; do
-  grep -qF "${made#*:}" "build/${made%%:*}" || fail "build/${made%%:*} does not hold ${made#*:}"
+  grep -qF "${made#*:}" "build/release/${made%%:*}" || fail "build/release/${made%%:*} does not hold ${made#*:}"
 done
-ninja -C build -t query tools/demo_programs >"$work/demo.txt"
+ninja -C build/release -t query tools/demo_programs >"$work/demo.txt"
 grep -q 'lookout-echo' "$work/demo.txt" || fail "the demo does not build it"
 echo "a new channel with a service touched $(wc -l <"$work/touched.txt") files outside of its folder:"
 cat "$work/touched.txt"
 [ "${2:-}" = build ] || exit 0
 
-ninja -C build golden_wire >"$work/build.txt" 2>&1 || { tail -n 30 "$work/build.txt"; fail "golden_wire is not built"; }
-if build/tests/golden_wire >"$work/golden.txt"; then fail "a wrong fingerprint is accepted"; fi
+ninja -C build/release golden_wire >"$work/build.txt" 2>&1 || { tail -n 30 "$work/build.txt"; fail "golden_wire is not built"; }
+if build/release/tests/golden_wire >"$work/golden.txt"; then fail "a wrong fingerprint is accepted"; fi
 line=$(grep -oE 'echo_t [0-9a-f]{16}' "$work/golden.txt" | grep -v 0000000000000000 | head -n 1)
 sed -i "s/^echo_t .*/$line/" tests/golden/fingerprints.txt
-ninja -C build structure unit_wire unit_diff unit_replay unit_doctor lookout-echo lookout-replay lookout-doctor >"$work/build.txt" 2>&1 ||
+ninja -C build/release structure unit_wire unit_diff unit_replay unit_doctor lookout-echo lookout-replay lookout-doctor >"$work/build.txt" 2>&1 ||
   { tail -n 30 "$work/build.txt"; fail "the copy is not built"; }
 for test in golden_wire structure unit_wire unit_diff unit_doctor; do
-  build/tests/$test >"$work/test.txt" 2>&1 || { grep -A5 'Failure\|FAILED' "$work/test.txt" | head -n 60; fail "$test"; }
+  build/release/tests/$test >"$work/test.txt" 2>&1 || { grep -A5 'Failure\|FAILED' "$work/test.txt" | head -n 60; fail "$test"; }
 done
-build/bin/lookout-echo --config config/demo --check >/dev/null || fail "lookout-echo --check"
+build/release/bin/lookout-echo --config config/demo --check >/dev/null || fail "lookout-echo --check"
 echo 'num_echoes: 11' >config/demo/echo.txtpb
 for program in echo doctor; do
-  code=0; build/bin/lookout-$program --config config/demo --check >"$work/check.txt" 2>&1 || code=$?
+  code=0; build/release/bin/lookout-$program --config config/demo --check >"$work/check.txt" 2>&1 || code=$?
   [ "$code" -ne 0 ] && grep -q 'echo.txtpb:1: num_echoes: must be at most 10' "$work/check.txt" || { cat "$work/check.txt"; fail "lookout-$program accepts a wrong config"; }
 done
 rm config/demo/echo.txtpb
 printf '$GPHDT,90.0,T*0C\r\n$GPGGA,120000.00,4338.0000,N,07209.0000,W,4,12,0.8,100.0,M,0.0,M,,*40\r\n' >"$work/log.nmea"
-build/bin/lookout-replay --config config/demo --in "$work/log.nmea" --out "$work/log.lcmlog" --only navigator --only echo >"$work/replay.txt" 2>&1 || true
+build/release/bin/lookout-replay --config config/demo --in "$work/log.nmea" --out "$work/log.lcmlog" --only navigator --only echo >"$work/replay.txt" 2>&1 || true
 grep -q '^POSE ' "$work/replay.txt" && { grep -q '^ECHO ' "$work/replay.txt" || { cat "$work/replay.txt"; fail "replay does not run it"; }; }
