@@ -115,7 +115,7 @@ TEXT
 add_before common/bus/channels.hpp 'Channel kHealth[{]' 'inline constexpr Channel kEcho{"ECHO", "echo_t", "echo", 50, 100, false, true};'
 sed -i 's/kOrders, *kHealth,/kOrders, kEcho, kHealth,/' common/bus/channels.hpp
 add_before common/bus/services.hpp '^    ServiceRow[{]"plotter"' \
-  '    ServiceRow{"echo", "echo", "poses again", 10, "network", "checks the config", "none", {\&kPose}, true},'
+  '    ServiceRow{"echo", "echo", "poses again", 10, "network", "checks the config", "none", {&kPose}, true},'
 cat >config/schema/echo.proto <<'TEXT'
 // What comes back: echo.txtpb.
 syntax = "proto2";
@@ -129,7 +129,7 @@ message Echo {
 TEXT
 add_before tools/replay/stage.cpp '^#include "services/georeferencer/params.hpp"' '#include "services/echo/params.hpp"\n#include "services/echo/service.hpp"'
 add_before tools/replay/stage.cpp '^      [{]"segmenter", ' \
-  '      {"echo", [](const fs::path\& folder) { echo::LoadParams(folder); }, Make<PlainStage<echo::Service, echo::LoadParams>>},'
+  '      {"echo", [](const fs::path& folder) { echo::LoadParams(folder); }, Make<PlainStage<echo::Service, echo::LoadParams>>},'
 add_before README.md '^[|] \[lookout-plotter\]' '| [lookout-echo](services/echo/README.md) | POSE | ECHO |'
 add_before deploy/README.md '^[|] plotter [|]' '| echo | poses again | POSE | ECHO | none | checks the config | 10 |'
 add_before lcmtypes/README.md '^[|] gnss_fix_t [|]' '| echo_t | ECHO | a pose again |'

@@ -14,28 +14,12 @@
 #include "common/core/sentence.hpp"
 #include "common/messages/checks.hpp"
 #include "common/messages/pose_message.hpp"
-#include "lookout/alert_ack_t.hpp"
-#include "lookout/alerts_t.hpp"
-#include "lookout/attitude_t.hpp"
-#include "lookout/gnss_fix_t.hpp"
-#include "lookout/health_t.hpp"
-#include "lookout/lidar_clock_t.hpp"
-#include "lookout/lidar_nmea_t.hpp"
-#include "lookout/lidar_packets_t.hpp"
-#include "lookout/lidar_scan_t.hpp"
-#include "lookout/nav_raw_t.hpp"
-#include "lookout/obstacles_t.hpp"
-#include "lookout/order_t.hpp"
-#include "lookout/pose_t.hpp"
-#include "lookout/run_info_t.hpp"
-#include "lookout/segments_t.hpp"
-#include "lookout/sim_truth_t.hpp"
-#include "lookout/tracks_t.hpp"
 #include "services/navigator/wire.hpp"
 #include "services/vlp16/core/data_packet.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "services/vlp16/core/position_packet.hpp"
 #include "services/vlp16/wire.hpp"
+#include "tools/log/channel_types.hpp"
 #include "tools/log/other_type.hpp"
 
 namespace lookout::log {
@@ -107,23 +91,7 @@ struct Checker {
   std::string_view (*check)(Bytes bytes);
 };
 
-constexpr std::array kCheckers{Checker{bus::kLidarPackets.name, &Check<lidar_packets_t>},
-                               Checker{bus::kLidarScan.name, &Check<lidar_scan_t>},
-                               Checker{bus::kLidarClock.name, &Check<lidar_clock_t>},
-                               Checker{bus::kLidarNmea.name, &Check<lidar_nmea_t>},
-                               Checker{bus::kSegments.name, &Check<segments_t>},
-                               Checker{bus::kNavRaw.name, &Check<nav_raw_t>},
-                               Checker{bus::kGnssFix.name, &Check<gnss_fix_t>},
-                               Checker{bus::kAttitude.name, &Check<attitude_t>},
-                               Checker{bus::kPose.name, &Check<pose_t>},
-                               Checker{bus::kObstacles.name, &Check<obstacles_t>},
-                               Checker{bus::kTracks.name, &Check<tracks_t>},
-                               Checker{bus::kAlerts.name, &Check<alerts_t>},
-                               Checker{bus::kAlertAck.name, &Check<alert_ack_t>},
-                               Checker{bus::kOrders.name, &Check<order_t>},
-                               Checker{bus::kHealth.name, &Check<health_t>},
-                               Checker{bus::kRunInfo.name, &Check<run_info_t>},
-                               Checker{bus::kSimTruth.name, &Check<sim_truth_t>}};
+constexpr auto kCheckers = OfEachChannel([](std::string_view name, auto type) { return Checker{name, &Check<typename decltype(type)::type>}; });
 static_assert(kCheckers.size() == bus::kChannels.size());
 
 const Checker* CheckerOf(std::string_view channel) {

@@ -1,0 +1,18 @@
+# Reads the channel table (common/bus/channels.hpp).
+#   lookout_channel_table(NAMES TYPES)  sets two lists of the same length, in the order of the table
+set(LOOKOUT_CHANNEL_TABLE ${CMAKE_SOURCE_DIR}/common/bus/channels.hpp)
+set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${LOOKOUT_CHANNEL_TABLE})
+function(lookout_channel_table names_variable types_variable)
+  file(READ ${LOOKOUT_CHANNEL_TABLE} text)
+  string(REGEX MATCHALL "constexpr Channel k" beginnings "${text}")
+  string(REGEX MATCHALL "constexpr Channel k[A-Za-z0-9]+{\"[A-Z0-9_]+\",[ \n]*\"[a-z0-9_]+\"" rows "${text}")
+  list(LENGTH beginnings num_beginnings)
+  list(LENGTH rows num_rows)
+  if(num_rows EQUAL 0 OR NOT num_rows EQUAL num_beginnings)
+    message(FATAL_ERROR "${LOOKOUT_CHANNEL_TABLE}: ${num_rows} of ${num_beginnings} rows begin with name and type: mend the others")
+  endif()
+  list(TRANSFORM rows REPLACE ".*{\"([A-Z0-9_]+)\".*" "\\1" OUTPUT_VARIABLE names)
+  list(TRANSFORM rows REPLACE ".*\"([a-z0-9_]+)\"$" "\\1" OUTPUT_VARIABLE types)
+  set(${names_variable} ${names} PARENT_SCOPE)
+  set(${types_variable} ${types} PARENT_SCOPE)
+endfunction()
