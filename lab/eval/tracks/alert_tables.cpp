@@ -97,8 +97,8 @@ NamedTable FaultTable(const std::vector<AlertWorld>& worlds) {
     for (const auto fault : faults) {
       const auto worst = std::ranges::max_element(world.scenes, {}, [&](const AlertRow& row) { return num_all(row.scores, fault); });
       table.Add({world.name, std::string(NameOf(fault)), Number(sum.Num(AlertVerdict::kFar, fault)), Number(sum.Num(AlertVerdict::kNothing, fault)),
-                 Number(sum.Num(AlertVerdict::kRepeated, fault)), Number(PercentOfAll(num_false(sum, fault), sum.NumFalse()), 0),
-                 Number(PercentOfAll(sum.Num(AlertVerdict::kRepeated, fault), sum.Num(AlertVerdict::kRepeated)), 0), worst->scene});
+                 Number(sum.Num(AlertVerdict::kRepeated, fault)), Percent(ShareOf(num_false(sum, fault), sum.NumFalse()), 0),
+                 Percent(ShareOf(sum.Num(AlertVerdict::kRepeated, fault), sum.Num(AlertVerdict::kRepeated)), 0), worst->scene});
     }
   }
   return {"alerts_causes", "alerts: why they are false or repeated, counted", std::move(table)};
