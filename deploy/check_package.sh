@@ -88,7 +88,7 @@ start_by_hand() {
     code=0
     # In a network of its own; SIGTERM after 3 s must end it cleanly.
     unshare -n bash -c "ip link set lo up && ip route add 239.255.76.0/24 dev lo &&
-      exec chroot --userspec=lookout:lookout '$root' /bin/sh -c 'mkdir -p /tmp/lookout && cd /tmp/lookout && exec timeout --preserve-status 3 $line'" \
+      exec chroot --userspec=lookout:lookout '$root' /bin/sh -c 'cd \$(mktemp -d) && exec timeout --preserve-status 3 $line'" \
       >"$work/by_hand.txt" 2>&1 || code=$?
     if [ "$code" -ne 0 ] || ! grep -q 'starts, version' "$work/by_hand.txt"; then
       cat "$work/by_hand.txt" >&2
@@ -96,7 +96,6 @@ start_by_hand() {
     fi
     echo "$line: started, ended cleanly"
   done
-  rm -rf "$root/tmp/lookout"
 }
 say "starts under systemd"
 # A unit of the check's own starts all in the machine, kills each, and leaves what it saw.
