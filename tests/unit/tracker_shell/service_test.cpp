@@ -1,8 +1,6 @@
 #include "services/tracker/service.hpp"
 
-#include <algorithm>
 #include <gtest/gtest.h>
-#include <limits>
 #include <random>
 #include <set>
 #include <string>
@@ -12,28 +10,12 @@
 #include "common/bus/memory_bus.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 #include "tests/unit/tracker_shell/service_fixture.hpp"
+#include "tests/unit/tracker_shell/still_boat_fixture.hpp"
 
 namespace lookout::tracker {
 namespace {
 
 using std::chrono::milliseconds;
-
-class TrackerService : public test::ServiceFixture {
- protected:
-  // A boat that lies still.
-  void SendPoses(std::int64_t first_us, std::int64_t last_us, std::int64_t first_seq = 0) {
-    for (auto offset_us = first_us; offset_us <= last_us; offset_us += 20'000) Send(bus::kPose, test::MakePose(offset_us, first_seq++));
-  }
-  // One thing, 20 m to the north, and so far to the east.
-  static obstacles_t Obstacles(std::int64_t number, std::int64_t seq, double east_m = 0.0) {
-    const auto offset_us = test::kScanUs * number;
-    return test::MakeObstacles(offset_us, seq, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {east_m, 20.0})});
-  }
-  void SendScan(std::int64_t number, std::int64_t seq) {
-    SendSight(number, seq);
-    Send(bus::kObstacles, Obstacles(number, seq));
-  }
-};
 
 TEST_F(TrackerService, SendsTracksAndAlertsOfEachScan) {
   SendPoses(0, 1'000'000);
@@ -270,8 +252,6 @@ TEST(TrackerServiceWithoutALidar, UsesEachScanAsSoonAsPoseIsThere) {
   EXPECT_EQ(num_unknown, 5);
 }
 
-Utime Host(milliseconds time) { return Utime(std::chrono::microseconds(1'000'000'000'000'000)) + time; }
-
 TEST_F(TrackerService, GivesUpAWaitByTheHostsClock) {
   SendPoses(0, 1'000'000);
   SendScan(0, 0);
@@ -294,243 +274,6 @@ TEST_F(TrackerService, SaysWhichInputsAreSilent) {
   SendSight(0, 0);
   service_.AdvanceTo(Host(milliseconds(2000)));
   EXPECT_TRUE(service_.Report().reason.ends_with("no OBSTACLES for 2 s; no POSE for 2 s")) << service_.Report().reason;
-}
-
-TEST_F(TrackerService, SaysWhenNobodyLooksAndTakesNoteOfIt) {
-  SendPoses(0, 10'000'000);
-  std::int64_t host_ms = 0;
-  const auto pass = [&](int ms) {
-    for (const auto end_ms = host_ms + ms; host_ms < end_ms; host_ms += 10) service_.AdvanceTo(Host(milliseconds(host_ms)));
-    HandleAll();
-  };
-  pass(2000);
-  EXPECT_TRUE(alerts_.empty()) << "before the first scan there is nothing to repeat";
-  EXPECT_NE(service_.Report().reason.find("no look-out: no whole scan yet"), std::string::npos) << service_.Report().reason;
-  for (int i = 0; i < 5; ++i) {
-    SendScan(i, i);
-    pass(100);
-  }
-  const auto before = alerts_.size();
-  EXPECT_EQ(before, 5U);
-  EXPECT_EQ(service_.Report().reason.find("no look-out"), std::string::npos);
-  EXPECT_FALSE(service_.TakeWatchChange());
-  pass(1500);
-  EXPECT_TRUE(service_.TakeWatchChange());
-  ASSERT_EQ(alerts_.size(), before + 3) << "at once, and every half second";
-  const auto watch = alerts_.back();
-  EXPECT_TRUE(watch.is_watch);
-  EXPECT_EQ(watch.seq, 4);
-  ASSERT_GE(watch.num_alerts, 1);
-  EXPECT_EQ(watch.alerts[0].cause, alert_t::CAUSE_WATCH);
-  EXPECT_EQ(watch.alerts[0].level, alert_t::LEVEL_WARNING);
-  EXPECT_EQ(watch.alerts[0].state, alert_t::STATE_ACTIVE);
-  EXPECT_EQ(watch.alerts[0].id, -1);
-  EXPECT_NE(watch.alerts[0].text.find("no look-out: no whole scan for 1."), std::string::npos) << watch.alerts[0].text;
-  EXPECT_NE(service_.Report().reason.find("no look-out"), std::string::npos);
-
-  alert_ack_t acknowledgement{};
-  acknowledgement.source = "page";
-  acknowledgement.alert_id = -1;
-  acknowledgement.alert_raised_utime_us = watch.alerts[0].raised_utime_us;
-  Send(bus::kAlertAck, acknowledgement);
-  pass(20);
-  EXPECT_EQ(alerts_.back().alerts.at(0).state, alert_t::STATE_ACKNOWLEDGED);
-
-  // A scan that lost packets is no look-out.
-  auto holed = Obstacles(30, 30);
-  holed.scan_flags = lidar_scan_t::FLAG_HOLE;
-  SendSight(30, 30);
-  Send(bus::kObstacles, holed);
-  pass(100);
-  EXPECT_FALSE(service_.TakeWatchChange());
-  // Nor are two: an alert takes three.
-  for (int i = 31; i < 33; ++i) {
-    SendScan(i, i);
-    pass(20);
-    EXPECT_FALSE(service_.TakeWatchChange());
-  }
-  EXPECT_NE(service_.Report().reason.find("no look-out: less than 3 whole scans within 1.0 s"), std::string::npos) << service_.Report().reason;
-  SendScan(33, 33);
-  pass(20);
-  EXPECT_TRUE(service_.TakeWatchChange());
-  EXPECT_TRUE(alerts_.back().is_watch);
-  EXPECT_EQ(alerts_.back().alerts.at(0).state, alert_t::STATE_CLEARED);
-  const auto after = alerts_.size();
-  pass(300);
-  EXPECT_EQ(alerts_.size(), after);
-  EXPECT_EQ(Count("times_unwatched"), 1);
-  for (const auto& message : alerts_) {
-    if (message.is_watch) continue;
-    EXPECT_TRUE(std::ranges::none_of(message.alerts, [](const alert_t& alert) { return alert.cause == alert_t::CAUSE_WATCH; }))
-        << "the proof knows no clock";
-  }
-}
-
-// The navigator is gone: obstacles come in the vessel frame only, 8 m ahead, and nothing waits.
-TEST(TrackerServiceWithAGuardZone, WarnsWithoutPose) {
-  auto params = test::MakeParams();
-  params.look_out.limits.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
-  bus::MemoryBus bus;
-  Service service(bus, params);
-  std::vector<alerts_t> alerts;
-  bus::Subscribe<alerts_t>(bus, bus::kAlerts, [&](const alerts_t& message) { alerts.push_back(message); });
-  const auto handle_all = [&bus] {
-    while (bus.HandleOnce()) {
-    }
-  };
-  service.AdvanceTo(Host(milliseconds(0)));
-  service.AdvanceTo(Host(milliseconds(1000)));
-  for (int i = 0; i < 50; ++i) {
-    service.AdvanceTo(Host(milliseconds(1000 + 100 * i)));
-    bus::Publish(bus, bus::kLidarScan, test::MakeScan(test::kScanUs * i, i));
-    bus::Publish(bus, bus::kSegments, test::MakeSegments(test::kScanUs * i, i));
-    const auto obstacle = test::MakeObstacle(1, test::kStartUs + test::kScanUs * i, {i < 5 ? 8.0 : 30.0, 0.0});
-    const auto message = test::MakeObstacles(test::kScanUs * i, i, {obstacle});
-    bus::Publish(bus, bus::kObstacles, test::InTheVesselFrame(message, obstacle_t::STATUS_POSE_TIMEOUT));
-    handle_all();
-    service.AdvanceTo(Host(milliseconds(1010 + 100 * i)));
-    handle_all();
-    ASSERT_EQ(alerts.size(), static_cast<std::size_t>(i) + 1) << "without delay";
-    ASSERT_EQ(alerts.back().num_alerts, i < 2 ? 0 : 1) << i;
-  }
-  EXPECT_EQ(alerts.at(2).alerts[0].text, "obstacle in the guard zone: 8.0 m, 0 deg to starboard");
-  EXPECT_EQ(alerts.at(2).alerts[0].level, alert_t::LEVEL_WARNING);
-  EXPECT_EQ(alerts.at(2).alerts[0].track_id, 0);
-  EXPECT_EQ(alerts.back().alerts[0].state, alert_t::STATE_RECTIFIED) << "nobody took note";
-}
-
-// Without position or heading all that is in the zone shares one alert: a buoy was acknowledged, a motor boat crossed 8 m ahead, and nothing rang.
-TEST(TrackerServiceWithAGuardZone, RingsWithoutPoseForABoatBesideABuoyThatWasAcknowledged) {
-  auto params = test::MakeParams();
-  params.look_out.limits.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
-  bus::MemoryBus bus;
-  Service service(bus, params);
-  std::vector<alerts_t> alerts;
-  bus::Subscribe<alerts_t>(bus, bus::kAlerts, [&](const alerts_t& message) { alerts.push_back(message); });
-  const auto send = [&](int i, const std::vector<std::pair<double, double>>& places_m) {
-    service.AdvanceTo(Host(milliseconds(1000 + 100 * i)));
-    bus::Publish(bus, bus::kLidarScan, test::MakeScan(test::kScanUs * i, i));
-    bus::Publish(bus, bus::kSegments, test::MakeSegments(test::kScanUs * i, i));
-    std::vector<obstacle_t> obstacles;
-    for (const auto& place_m : places_m) {
-      const auto id = static_cast<std::int32_t>(obstacles.size()) + 1;
-      obstacles.push_back(test::MakeObstacle(id, test::kStartUs + test::kScanUs * i, place_m));
-    }
-    bus::Publish(bus, bus::kObstacles, test::InTheVesselFrame(test::MakeObstacles(test::kScanUs * i, i, obstacles)));
-    while (bus.HandleOnce()) {
-    }
-    service.AdvanceTo(Host(milliseconds(1010 + 100 * i)));
-    while (bus.HandleOnce()) {
-    }
-  };
-  const std::pair<double, double> buoy_m{5.0, -4.0};
-  service.AdvanceTo(Host(milliseconds(0)));
-  for (int i = 0; i < 10; ++i) send(i, {buoy_m});
-  ASSERT_EQ(alerts.back().num_alerts, 1);
-  alert_ack_t acknowledgement{};
-  acknowledgement.source = "page";
-  acknowledgement.alert_id = alerts.back().alerts[0].id;
-  acknowledgement.alert_raised_utime_us = alerts.back().alerts[0].raised_utime_us;
-  bus::Publish(bus, bus::kAlertAck, acknowledgement);
-  for (int i = 10; i < 40; ++i) send(i, {buoy_m});
-  ASSERT_EQ(alerts.back().alerts.at(0).state, alert_t::STATE_ACKNOWLEDGED);
-  for (int i = 40; i < 43; ++i) send(i, {buoy_m, {8.0, 4.0 - 0.5 * (i - 40)}});
-  ASSERT_EQ(alerts.back().num_alerts, 1);
-  EXPECT_EQ(alerts.back().alerts[0].state, alert_t::STATE_ACTIVE) << "in the third scan that shows the boat";
-  EXPECT_EQ(alerts.back().alerts[0].text, "obstacle in the guard zone: 8.5 m, 21 deg to port") << "it tells of the boat, not of the buoy";
-}
-
-TEST_F(TrackerService, DropsAcknowledgementsOfNoAlertAndOfAnotherRun) {
-  SendPoses(0, 1'000'000);
-  SendScan(0, 0);
-  alert_ack_t acknowledgement{};
-  acknowledgement.source = "page";
-  acknowledgement.alert_id = 77;
-  Send(bus::kAlertAck, acknowledgement);
-  acknowledgement.alert_id = 0;
-  Send(bus::kAlertAck, acknowledgement);
-  SendScan(1, 1);
-  EXPECT_TRUE(alerts_.at(1).acknowledged.empty());
-  EXPECT_EQ(Count("acks_of_no_alert"), 1);
-  EXPECT_EQ(Count("acks_refused_id"), 1);
-  acknowledgement.alert_id = 78;
-  for (int i = 0; i < 150; ++i) Send(bus::kAlertAck, acknowledgement);
-  EXPECT_EQ(Count("acks_dropped"), 50);
-}
-
-TEST_F(TrackerService, TakesOrdersWithTheNextScanAndRepeatsThem) {
-  SendPoses(0, 1'000'000);
-  SendScan(0, 0);
-  order_t order{};
-  order.source = "page";
-  order.kind = order_t::KIND_SETTINGS;
-  order.mode = order_t::MODE_OPEN_WATER;
-  order.guard_zone_range_m = 12.0F;
-  order.guard_zone_from_rad = order.guard_zone_to_rad = std::numeric_limits<float>::quiet_NaN();
-  order.cpa_limit_m = 3.0F;
-  Send(bus::kOrders, order);
-  order.mode = 7;
-  Send(bus::kOrders, order);
-  order.kind = order_t::KIND_SILENCE;
-  Send(bus::kOrders, order);
-  SendScan(1, 1);
-  SendScan(2, 2);
-  EXPECT_EQ(alerts_.at(0).cpa_limit_m, 5.0F);
-  EXPECT_EQ(alerts_.at(0).silenced_until_utime_us, 0);
-  ASSERT_EQ(alerts_.at(1).num_orders, 2);
-  EXPECT_EQ(alerts_.at(1).orders[0].cpa_limit_m, 3.0F);
-  EXPECT_EQ(alerts_.at(1).cpa_limit_m, 3.0F);
-  EXPECT_EQ(alerts_.at(1).guard_zone_range_m, 12.0F);
-  EXPECT_EQ(alerts_.at(1).silenced_until_utime_us, alerts_.at(1).end_utime_us + 30'000'000);
-  EXPECT_EQ(alerts_.at(2).num_orders, 0);
-  EXPECT_EQ(alerts_.at(2).cpa_limit_m, 3.0F) << "until the next order";
-  EXPECT_EQ(Count("orders_taken"), 2);
-  EXPECT_EQ(Count("orders_refused_kind"), 1);
-}
-
-// Lidar begins anew: the buoy ahead gets another track and another alert, of which nobody has to take note again.
-TEST_F(TrackerService, TakesAnAcknowledgementOverWhereTheLidarBeginsAnew) {
-  // At 3 m/s towards a thing that stands 60 m ahead.
-  const auto send_scan = [&](int number, std::int64_t seq) {
-    const auto offset_us = test::kScanUs * number;
-    for (auto pose_us = offset_us; pose_us < offset_us + test::kScanUs; pose_us += 20'000) {
-      auto pose = test::MakePose(pose_us, pose_us / 20'000);
-      pose.position_map_m[1] = 3e-6 * static_cast<double>(pose_us);
-      pose.velocity_map_mps[1] = 3.0;
-      Send(bus::kPose, pose);
-    }
-    SendSight(number, seq);
-    Send(bus::kObstacles, test::MakeObstacles(offset_us, seq, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {0.0, 60.0})}));
-  };
-  const auto active = [&]() -> std::optional<alert_t> {
-    if (alerts_.empty()) return std::nullopt;
-    const auto found = std::ranges::find(alerts_.back().alerts, static_cast<std::int32_t>(alert_t::STATE_ACTIVE), &alert_t::state);
-    return found == alerts_.back().alerts.end() ? std::nullopt : std::optional(*found);
-  };
-  int number = 0;
-  // A warning, so that the next is no graver.
-  while (number < 170 && !(active() && active()->level == alert_t::LEVEL_WARNING)) send_scan(number, number), ++number;
-  if (!active()) GTEST_FAIL() << "no alert";
-  const auto before = *active();
-  alert_ack_t acknowledgement{};
-  acknowledgement.source = "page";
-  acknowledgement.alert_id = before.id;
-  acknowledgement.alert_raised_utime_us = before.raised_utime_us;
-  Send(bus::kAlertAck, acknowledgement);
-  for (int i = 0; i < 5; ++i, ++number) send_scan(number, number);
-  EXPECT_FALSE(active());
-
-  int num_active = 0;
-  for (int seq = 0; seq < 20; ++seq, ++number) {
-    send_scan(number, seq);
-    num_active += active() ? 1 : 0;
-  }
-  EXPECT_EQ(Count("runs_begun"), 1);
-  const auto& last = alerts_.back().alerts;
-  const auto again = std::ranges::find_if(last, [&before](const alert_t& alert) { return alert.track_id != before.track_id; });
-  ASSERT_NE(again, last.end()) << "what still holds is raised again within 2 s";
-  EXPECT_EQ(again->state, alert_t::STATE_ACKNOWLEDGED);
-  EXPECT_LE(num_active, 2);
 }
 
 TEST_F(TrackerService, NeverDiesOfBytes) {
