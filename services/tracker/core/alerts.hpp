@@ -158,7 +158,10 @@ class Alerts {
     int num_off = 0;
 
     void Update(Utime time, bool is_whole, bool says_on, bool says_off, double clear_s, bool is_known = false);
-    void Merge(const Latch& other) { is_on = is_on || other.is_on; }
+    void Merge(const Latch& other) {
+      is_on = is_on || other.is_on;
+      if (other.quiet_since) quiet_since = quiet_since ? std::max(*quiet_since, *other.quiet_since) : other.quiet_since;
+    }
     void ForgetLooks();
   };
   // What a scan says of a thing, by cause; nullptr: nothing.

@@ -74,6 +74,10 @@ constexpr double kMovesAfterS = 0.6;
 // other, than a motion; what goes on the same way moves. Chosen on seeds 21 to 24 of the own scenes.
 constexpr double kJumpMps = 0.1;
 constexpr double kGoesOnMps = 1.0;
+constexpr double kJumpsWithinS = 3.0;
+constexpr double kLoosenedS = 1.0;
+// Of what goes on as another track.
+constexpr double kOtherTrackMps = 0.3;
 
 constexpr std::size_t kMostParts = 3;  // beside the one that is seen
 // Where less than all is seen, it is a part: by so many deviations, and by a share of the size.
@@ -219,6 +223,7 @@ void Body::Predict(double dt_s) {
   }
   log_likelihood_ratio_ *= std::max(0.0, 1.0 - dt_s / kMotionMemoryS);
   since_update_s_ += dt_s;
+  since_jump_s_ += dt_s;
   age_s_ += dt_s;
 }
 
@@ -396,7 +401,9 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   const Eigen::Vector2d velocity = velocity_mps();
   const double speed = velocity.norm();
   const double speed_sd = speed > 0.0 ? std::sqrt(velocity.dot(velocity_covariance() * velocity)) / speed : 0.0;
-  stands_out_ = speed > kLeastSpeedMps && speed > (stands_out_ ? kSpeedSdsOn : kSpeedSds) * speed_sd;
+  // Where it jumps the way it goes, the velocity is less sure for a while, and it moves all the same.
+  const bool is_loosened = stands_out_ && goes_on_ && since_jump_s_ < kLoosenedS;
+  stands_out_ = speed > kLeastSpeedMps && (is_loosened || speed > (stands_out_ ? kSpeedSdsOn : kSpeedSds) * speed_sd);
   moved_s_ = stands_out_ && prefers_moving_ ? moved_s_ + dt_s : 0.0;
   if (moved_s_ < kMovesAfterS) moving_probability_ = std::min(moving_probability_, 0.5);
 }
@@ -432,7 +439,7 @@ void Body::MoveAs(const Body& before) {
   moving_covariance_.bottomRightCorner<3, 3>() = before.moving_covariance_.bottomRightCorner<3, 3>();
   moving_covariance_.block<2, 3>(0, 2).setZero();
   moving_covariance_.block<3, 2>(2, 0).setZero();
-  moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (kJumpMps * kJumpMps);
+  moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (kOtherTrackMps * kOtherTrackMps);
   if (before.prefers_moving_ && !prefers_moving_) {
     moving_.head<2>() = standing_;
     parts_s_ = 0.0;
@@ -447,16 +454,29 @@ void Body::MoveAs(const Body& before) {
 }
 
 void Body::AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
-  const Measured measured = Measure(seen_m, sides, range_m);
-  const auto first = FirstOutline(measured, seen_m);
+  // Where it is at the end of the scan.
+  auto now_m = seen_m;
+  auto now_sides = sides;
+  if (prefers_moving_) {
+    for (auto& corner : now_m) corner += sides.before_s * velocity_mps();
+  }
+  now_sides.before_s = 0.0;
+  const auto first = FirstOutline(Measure(now_m, now_sides, range_m), now_m);
   // What is known to move shows another part of itself, unless it was not where it should be.
+  const bool jumps = has_jumped || !prefers_moving_;
   const Eigen::Vector2d jump_m = first.middle_m - center_m();
-  const bool goes_on = jump_m.dot(last_jump_m_) > 0.0;
+  goes_on_ = jumps && since_jump_s_ < kJumpsWithinS && jump_m.dot(last_jump_m_) > 0.0;
   last_jump_m_ = jump_m;
-  const double jump_mps = has_jumped || !prefers_moving_ ? (goes_on ? kGoesOnMps : kJumpMps) : 0.0;
+  since_jump_s_ = 0.0;
+  const double jump_mps = jumps ? (goes_on_ ? kGoesOnMps : kJumpMps) : 0.0;
   moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
-  if (others_.size() == kMostParts) others_.erase(std::ranges::max_element(others_, {}, &Part::unseen_s));
-  others_.push_back({sides_, 0.0});
+  if (goes_on_) {
+    // What was seen before is where it was, and no part of it.
+    others_.clear();
+  } else {
+    if (others_.size() == kMostParts) others_.erase(std::ranges::max_element(others_, {}, &Part::unseen_s));
+    others_.push_back({sides_, 0.0});
+  }
   sides_ = first.sides;
   const auto directions = SideDirections();
   for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m += directions[i].dot(first.middle_m - position_m());

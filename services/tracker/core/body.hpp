@@ -123,6 +123,8 @@ class Body {
   Eigen::Matrix2d turned_ = Eigen::Matrix2d::Identity();   // of the sides' directions, from those of the compass: a boat that turns takes them along
   Eigen::Vector2d first_m_ = Eigen::Vector2d::Zero();      // the position at first
   Eigen::Vector2d last_jump_m_ = Eigen::Vector2d::Zero();  // when an outline did not fit: from where it was expected
+  double since_jump_s_ = 0.0;
+  bool goes_on_ = false;                                        // it jumped the same way before
   Eigen::Matrix2d frame_turned_ = Eigen::Matrix2d::Identity();  // of the thing's own frame, more than the sides' directions
   Eigen::Vector2d centered_m_ = Eigen::Vector2d::Zero();        // of the position, by Center() since the beginning, in the thing's own frame
   Eigen::Vector2d standing_ = Eigen::Vector2d::Zero();

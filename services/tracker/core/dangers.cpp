@@ -25,9 +25,6 @@ constexpr double kLikelyApproach = 0.5;
 // Drops of rain, spray and most crests are gone by then.
 constexpr double kStaysS = 0.8;
 constexpr std::chrono::milliseconds kSeenNow{300};
-// As far ahead as approaches are told, and off the reference point.
-constexpr double kWayS = 30.0;
-constexpr double kOwnHalfBeamM = 2.0;
 // What comes up so near to a known thing is a part of it until it is a track of its own.
 constexpr double kPartM = 2.0;
 
@@ -306,12 +303,6 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
     danger.time_left_s = TimeLeft(approach, limit_m);
     danger.is_grave = danger.time_left_s < needed_s;  // not where it is NaN
   };
-  // It would be too near if it stood, too.
-  const std::array<Eigen::Vector2d, 2> way_m{own->position_map_m.head<2>(), own->position_map_m.head<2>() + kWayS * own->velocity_map_mps};
-  const auto is_on_way = [&](const Track& track) {
-    if (is_own_still || !way_m[1].allFinite() || track.outline_m.empty()) return !is_own_still;
-    return GapOf(track.outline_m, way_m).distance_m <= params.limit_m + kOwnHalfBeamM;
-  };
   std::vector<Danger> dangers;
   std::map<std::int64_t, std::vector<DangerPlace>> places_of;  // of things of several tracks: all that are likely to come too near
   for (const auto& track : picture.tracks) {
@@ -328,10 +319,22 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
                   .seen = track.seen,
                   .place_map_m = place.position_map_m};
     add_approach(track.approach, params.limit_m, danger);
-    if (proof != nullptr && (Proof::IsYoung(track, time) || !proof->IsProven(track))) {
-      if (!danger.is_grave || time - track.seen > kSeenNow || (proof->MayBePiece(track.id) && !is_on_way(track))) danger.probability = 0.0;
-      danger.is_grave = false;
-      danger.is_just_seen = true;
+    const auto doubt = [&track, time](Danger& of) {
+      if (!of.is_grave || time - track.seen > kSeenNow) of.probability = 0.0;
+      of.is_grave = false;
+      of.is_just_seen = true;
+    };
+    const bool is_proven = proof == nullptr || proof->IsProven(track);
+    const bool is_young = proof != nullptr && Proof::IsYoung(track, time);
+    if (is_young || !is_proven) doubt(danger);
+    if (!is_proven) {
+      if (proof->MayBePiece(track.id)) danger.probability = 0.0;
+      // Whatever its course is, it is told no later than if it stood.
+      auto standing = danger;
+      standing.is_just_seen = false;
+      add_approach(track.approach_if_standing, params.limit_m, standing);
+      if (is_young) doubt(standing);
+      if (!is_own_still && IsGraver(standing, danger)) danger = standing;
     }
     if (danger.thing != track.id) danger.bearing_rad = place.bearing_rad;
     if (danger.probability >= kLikelyApproach && things.IsGroup(danger.thing)) places_of[danger.thing].push_back(place);

@@ -48,6 +48,7 @@ struct Track {
   double range_m = 0.0;
   double bearing_rad = 0.0;
   ClosestApproach approach;
+  ClosestApproach approach_if_standing;  // where its velocity is not believed
   Encounter encounter = Encounter::kNone;
 };
 

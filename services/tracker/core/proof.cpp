@@ -26,30 +26,42 @@ bool IsBesideWhatStands(const Track& track, std::span<const Track> tracks, std::
 
 Proof::Course Proof::CourseOf(const Track& track, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
   const bool is_beside = IsBesideWhatStands(track, tracks, shore_m, kBesideM);
-  return {track.seen, track.position_m, track.seen, is_beside, !is_beside, false};
+  return {track.seen, track.position_m, track.seen, track.position_m, is_beside, !is_beside, false};
 }
 
 void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
   constexpr double kShareOfWay = 0.5;
   std::set<std::int64_t> ids;
   for (const auto& track : tracks) {
-    if (track.velocity_mps.isZero(0.0)) continue;
+    if (track.velocity_mps.isZero(0.0)) {
+      const auto paused = courses_.find(track.id);
+      if (paused != courses_.end() && ToSeconds(track.seen - paused->second.seen) < kPauseS) ids.insert(track.id);
+      continue;
+    }
     ids.insert(track.id);
     const auto [known, is_new] = courses_.try_emplace(track.id);
     auto& course = known->second;
     if (is_new) course = CourseOf(track, tracks, shore_m);
-    if (course.is_proven || track.seen == course.seen) continue;  // where it is not seen its place is a guess
+    const bool is_seen = track.seen != course.seen;
     course.seen = track.seen;
+    if (course.is_proven || !is_seen) continue;  // where it is not seen its place is a guess
     const double speed_mps = track.velocity_mps.norm();
     const double seen_s = ToSeconds(track.seen - course.begin);
     const double way_m = (track.position_m - course.begin_m).norm();
+    const double gone_m = (track.position_m - course.origin_m).norm();
     const bool is_long_enough = seen_s >= std::clamp(speed_mps / kGainMps2, kLeastS, kMostS);
     const bool gets_there = is_long_enough && way_m >= kShareOfWay * speed_mps * seen_s;
-    course.has_left = course.has_left || (gets_there && way_m >= kLeavesM);
-    const bool is_off = course.has_left && !IsBesideWhatStands(track, tracks, shore_m, kTouchM);
-    course.is_proven = gets_there && (!course.is_beside || is_off || way_m >= kPassesM);
-    // It swung at its mooring; how it runs now is another course. What leaves slowly has not gone far by then.
-    if (!course.is_proven && !course.is_beside && seen_s > 2.0 * kMostS) course = CourseOf(track, tracks, shore_m);
+    course.has_left = course.has_left || (gets_there && gone_m >= kLeavesM);
+    course.is_proven =
+        gets_there && (!course.is_beside || gone_m >= kPassesM || (course.has_left && !IsBesideWhatStands(track, tracks, shore_m, kTouchM)));
+    if (course.is_proven || seen_s <= 2.0 * kMostS) continue;
+    // It swung at its mooring; how it runs now is another course. What leaves slowly goes on from where it began.
+    if (course.is_beside) {
+      course.begin = track.seen;
+      course.begin_m = track.position_m;
+    } else {
+      course = CourseOf(track, tracks, shore_m);
+    }
   }
   std::erase_if(courses_, [&ids](const auto& item) { return !ids.contains(item.first); });
 }

@@ -13,7 +13,8 @@ namespace lookout::tracker {
 
 /// Where one of two pieces of a hull or a crest behind another is taken for the thing itself, it seems to run, as fast as both are apart, and is gone
 /// a second later. A boat gets where its course says that it gets. So what moves is proven when it was seen for as long as a boat needs to gain that
-/// speed, a second at least, and has gone half of the way by then. What has not shown itself for 6 s begins anew.
+/// speed, a second at least, and has gone half of the way by then. What has not shown itself for 6 s begins anew. What seems to stand for
+/// less than kPauseS goes on.
 ///
 /// What began to move within kBesideM of something that stands (a quay, a boat at its berth) is, most often, a piece of that: as the own boat moves,
 /// now one end of it is seen and now the other. It is proven, slow or fast, when it has besides gone kLeavesM and is off by kTouchM, or has gone
@@ -30,6 +31,7 @@ class Proof {
 
   static constexpr double kBesideM = 3.0;
   static constexpr double kTouchM = 1.0;
+  static constexpr double kPauseS = 2.0;
   /// More than the parts of small craft are apart.
   static constexpr double kLeavesM = 3.0;
   static constexpr double kPassesM = 10.0;
@@ -52,11 +54,12 @@ class Proof {
 
  private:
   struct Course {
-    Utime begin;  // when it was seen to move first
+    Utime begin;  // of the way by which it shows itself
     Eigen::Vector2d begin_m = Eigen::Vector2d::Zero();
-    Utime seen;              // last
-    bool is_beside = false;  // it began so
-    bool has_left = false;   // or it did not begin beside anything
+    Utime seen;                                          // moving, last
+    Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  // where it was seen to move first
+    bool is_beside = false;                              // it began so
+    bool has_left = false;                               // or it did not begin beside anything
     bool is_proven = false;
   };
   static Course CourseOf(const Track& track, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m);

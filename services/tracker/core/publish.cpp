@@ -36,13 +36,14 @@ void Encountered(Track& track, const Pose& own, const Moving& self, const Tracke
   if (std::fabs(track.turn_rate_radps) > kTurnsForSureRadps) other.turn_rate_radps = track.turn_rate_radps;
   RelativeCovariance covariance = RelativeCovariance::Zero();
   covariance.topLeftCorner<2, 2>() = track.covariance_relative_m2;
-  covariance.bottomRightCorner<2, 2>() = Eigen::Matrix2d::Identity() * (kOwnVelocitySdMps * kOwnVelocitySdMps);
-  if (track.velocity_mps.isZero(0.0)) {
-    covariance.bottomRightCorner<2, 2>() += Eigen::Matrix2d::Identity() * (kStandingMps * kStandingMps);
-  } else {
-    covariance.bottomRightCorner<2, 2>() += track.covariance.bottomRightCorner<2, 2>();
+  covariance.bottomRightCorner<2, 2>() = Eigen::Matrix2d::Identity() * (kOwnVelocitySdMps * kOwnVelocitySdMps + kStandingMps * kStandingMps);
+  track.approach_if_standing = ClosestApproachOf(self, {track.outline_m, Eigen::Vector2d::Zero()}, covariance, params.encounter);
+  track.approach = track.approach_if_standing;
+  if (!track.velocity_mps.isZero(0.0)) {
+    covariance.bottomRightCorner<2, 2>() =
+        Eigen::Matrix2d::Identity() * (kOwnVelocitySdMps * kOwnVelocitySdMps) + track.covariance.bottomRightCorner<2, 2>();
+    track.approach = ClosestApproachOf(self, other, covariance, params.encounter);
   }
-  track.approach = ClosestApproachOf(self, other, covariance, params.encounter);
   track.encounter = EncounterOf(self, own.heading_rad, other, track.approach, params.encounter);
   track.range_m = GapOf(track.outline_m, std::array{place_m}).distance_m;
   const Eigen::Vector2d off = track.position_m - place_m;

@@ -243,8 +243,8 @@ TEST(ClosestApproachDangers, AreNoneBetweenWhatStandsAndABoatThatLiesStill) {
 
 constexpr Utime kStart{std::chrono::seconds(1'700'000'000)};
 
-// One end of a pontoon, then the other: it seems to run at the boat. Abeam it is nothing; ahead the pontoon itself is too near.
-TEST(ClosestApproachDangers, OfAPieceOfWhatStandsCountOnTheOwnWayAlone) {
+// One end of a pontoon, then the other: it seems to run at the boat. That is nothing, but the pontoon itself is too near where it lies ahead.
+TEST(ClosestApproachDangers, OfAPieceOfWhatStandsCountAsIfItStood) {
   for (const double abeam_m : {20.0, 3.0}) {
     for (const bool is_own_still : {false, true}) {
       Picture picture;
@@ -253,6 +253,7 @@ TEST(ClosestApproachDangers, OfAPieceOfWhatStandsCountOnTheOwnWayAlone) {
       picture.tracks[0].approach.probability = 0.0;
       picture.tracks[1].velocity_mps = {-4.0, -4.0};
       picture.tracks[1].approach.tcpa_s = 3.0;
+      if (abeam_m < 10.0) picture.tracks[1].approach_if_standing = {.distance_m = 20.0, .cpa_m = 3.0, .tcpa_s = 10.0, .probability = 0.9};
       picture.tracks[1].first = kStart - std::chrono::seconds(5);
       picture.tracks[1].seen = kStart;
       Proof proof;
@@ -263,6 +264,30 @@ TEST(ClosestApproachDangers, OfAPieceOfWhatStandsCountOnTheOwnWayAlone) {
       EXPECT_EQ(piece.probability > 0.0, abeam_m < 10.0 && !is_own_still) << abeam_m << " " << is_own_still;
     }
   }
+}
+
+// A boat at its mooring, dead ahead, swings: a velocity that has not shown itself takes no warning away.
+TEST(ClosestApproachDangers, OfACourseThatIsNotProvenAreToldNoLaterThanIfItStood) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 30.0})};
+  auto& moored = picture.tracks[0];
+  moored.rectangle.center_m = moored.position_m = moored.outline_m[0];
+  moored.approach = moored.approach_if_standing = {.distance_m = 28.0, .cpa_m = 0.0, .tcpa_s = 9.0, .probability = 1.0};
+  moored.first = kStart - std::chrono::seconds(60);
+  moored.seen = kStart;
+  Proof proof;
+  const auto told = [&] {
+    proof.Update(picture.tracks);
+    return ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).at(0);
+  };
+  const auto standing = told();
+  EXPECT_TRUE(standing.is_grave);
+  moored.velocity_mps = {0.4, 0.0};
+  moored.approach = {.distance_m = 28.0, .cpa_m = 6.0, .tcpa_s = 14.0, .probability = 0.1};
+  const auto swinging = told();
+  EXPECT_EQ(swinging.probability, standing.probability);
+  EXPECT_TRUE(swinging.is_grave);
+  EXPECT_EQ(swinging.time_left_s, standing.time_left_s);
 }
 
 TEST(StillWatch, SeesADriftAndADepartureButNoSway) {

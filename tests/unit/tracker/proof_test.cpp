@@ -75,6 +75,27 @@ TEST_F(ProofTest, WhatIsSlowInOpenWaterIsProvenAfterASecond) {
   EXPECT_TRUE(proof_.IsProven(boat_));
 }
 
+TEST_F(ProofTest, WhatCreepsAlongAQuayAndThenRunsIsNoPieceSoon) {
+  standing_ = {BoxAt(2, -4.0, 0.0)};
+  Run(20.0, 0.3, 0.1);
+  EXPECT_TRUE(proof_.MayBePiece(1));
+  const double from_m = north_m_;
+  for (int i = 0; i < 100 && proof_.MayBePiece(1); ++i) Run(0.1, 3.0);
+  EXPECT_LT(north_m_ - from_m, 20.0);
+}
+
+TEST_F(ProofTest, ACourseIsGoneOnWithWhereItSeemsToStandForAMoment) {
+  standing_ = {BoxAt(2, -4.0, 0.0), BoxAt(3, -4.0, 4.0), BoxAt(4, -4.0, 8.0), BoxAt(5, -4.0, 12.0)};
+  for (int i = 0; i < 6; ++i) {
+    Run(2.0, 1.0);
+    Run(0.5, 0.0);
+    north_m_ += 0.5;
+  }
+  Run(0.1, 1.0);
+  EXPECT_FALSE(proof_.MayBePiece(1));
+  EXPECT_TRUE(proof_.IsProven(boat_));
+}
+
 TEST_F(ProofTest, WhatBeganBesideSomethingThatStandsMayBeAPieceOfIt) {
   for (const bool is_shore : {false, true}) {
     SCOPED_TRACE(is_shore);

@@ -247,6 +247,23 @@ TEST(Situation, AFastBoatLeavesItsMooringAndIsSaidToMoveWithinFiveSeconds) {
   }
 }
 
+// It leaves nothing of itself behind where it was.
+TEST(Situation, ABoatThatRunsAwayFastIsNoLongerThanItIs) {
+  const auto story = Follow(190, [](int scan) {
+    const double s = test::kScanS * scan;
+    const double gains_s = std::clamp(s - 11.0, 0.0, 4.9 / 3.0);
+    const double way_m = 1.1 * std::max(0.0, s - 6.0) + 1.5 * gains_s * gains_s + 4.9 * std::max(0.0, s - 11.0 - gains_s);
+    return Moment{Box({-28.0 + way_m, 16.0}, 5.0, 2.0, 1.2, 1), AsOne(false)};
+  });
+  for (std::size_t scan = 130; scan < story.pictures.size(); ++scan) {
+    for (const auto& track : story.pictures[scan].tracks) {
+      if (!test::IsReported(track)) continue;
+      EXPECT_LT(track.rectangle.length_m, 7.5) << "in scan " << scan;
+      EXPECT_GT(track.velocity_mps.x(), 1.0) << "in scan " << scan;
+    }
+  }
+}
+
 // Of a kayak that comes head-on, waves show the bow for a second and the paddler for the next. That which is seen jumps by 0.9 m, the kayak does not.
 TEST(Situation, AKayakOfWhichBowAndPaddlerAreSeenByTurnsMovesAllTheTime) {
   constexpr double kSpeedMps = 1.0;
