@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <deque>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "common/core/angles.hpp"
 #include "common/core/outlines.hpp"
@@ -26,9 +28,10 @@ constexpr double kLeastHiddenS = 1.0;
 constexpr double kMostHiddenS = 10.0;
 constexpr double kFoundAgainS = 1.0;
 constexpr double kWarningS = 10.0;
-constexpr double kTcpaStepS = 1.0;         // a TCPA that falls by more from one scan to the next does so by a turn
-constexpr double kLeastApproachMps = 1.0;  // slower, TCPA says little
-constexpr double kLeastPassMps = 0.3;      // slower, two keep company
+constexpr double kTcpaStepS = 1.0;            // a TCPA that falls by more from one scan to the next does so by a turn
+constexpr double kLeastApproachMps = 1.0;     // slower, TCPA says little
+constexpr double kTurnRadps = DegToRad(1.5);  // from here on a boat turns
+constexpr double kLeastPassMps = 0.3;         // slower, two keep company
 // What never had a track counts where it was there for twice the time in which 95 % should have one (1 s, 4 s).
 constexpr std::array<double, 2> kLeastSeenS{1.0, 4.0};
 
@@ -41,6 +44,22 @@ double LengthOf(const Polygon& outline_m) {
   }
   return length_m;
 }
+
+// Whether something has kept its course over the last second: its velocity has not turned.
+class CourseWatch {
+ public:
+  bool Keeps(std::int64_t utime_us, const Eigen::Vector2d& velocity_mps) {
+    constexpr double kOverS = 1.0;
+    velocities_.emplace_back(utime_us, velocity_mps);
+    while (velocities_.size() > 1 && SecondsBetween(velocities_[1].first, utime_us) >= kOverS) velocities_.pop_front();
+    const auto& [before_us, before_mps] = velocities_.front();
+    const double turned_rad = std::atan2(Cross(before_mps, velocity_mps), before_mps.dot(velocity_mps));
+    return std::abs(turned_rad) < kTurnRadps * std::max(kOverS, SecondsBetween(before_us, utime_us));
+  }
+
+ private:
+  std::deque<std::pair<std::int64_t, Eigen::Vector2d>> velocities_;
+};
 
 bool IsStanding(const History& history) {
   return std::ranges::all_of(history.moments, [](const auto& one) { return one.thing->velocity_mps.norm() < kStandingMps; });
@@ -204,15 +223,20 @@ void ScoreMotion(const History& history, TrackScores& scores) {
 void ScoreApproaches(const History& history, const ApproachLimits& limits, TrackScores& scores) {
   double before_s = 0.0;  // 0 = not known
   std::optional<std::int64_t> first_us;
+  CourseWatch own_course;
+  CourseWatch thing_course;
   for (const auto& [utime_us, thing, track, scan, alerts] : history.moments) {
     if (track != nullptr && !first_us) first_us = utime_us;
+    const bool own_keeps = scan->own && own_course.Keeps(utime_us, scan->own->velocity_mps);
+    const bool both_keep = thing_course.Keeps(utime_us, thing->velocity_mps) && own_keeps;
     if (!scan->own || !IsExpected(*thing) || (thing->velocity_mps - scan->own->velocity_mps).norm() < kLeastApproachMps) {
       before_s = 0.0;
       continue;
     }
     const auto& own = *scan->own;
     const auto truth = ApproachOf(own.outline_m, own.velocity_mps, thing->outline_m, thing->velocity_mps);
-    if (truth.tcpa_s > 0.0 && track != nullptr && !std::isnan(track->cpa_probability) && SecondsBetween(*first_us, utime_us) >= kSettledS) {
+    if (both_keep && truth.tcpa_s > 0.0 && track != nullptr && !std::isnan(track->cpa_probability) &&
+        SecondsBetween(*first_us, utime_us) >= kSettledS) {
       const double nearest_m = truth.tcpa_s <= limits.look_ahead_s
                                    ? truth.cpa_m
                                    : GapAfter(limits.look_ahead_s, own.outline_m, own.velocity_mps, thing->outline_m, thing->velocity_mps);
@@ -225,6 +249,10 @@ void ScoreApproaches(const History& history, const ApproachLimits& limits, Track
     const bool is_warning = before_s > kWarningS && truth.tcpa_s <= kWarningS && before_s - truth.tcpa_s < kTcpaStepS;
     before_s = truth.tcpa_s;
     if (!is_warning) continue;
+    if (!both_keep) {
+      ++scores.num_crossings_turning;
+      continue;
+    }
     ++scores.num_crossings;
     if (track == nullptr) {
       ++scores.num_crossings_untracked;

@@ -142,8 +142,8 @@ auto AdditiveOfTracks(auto& scores) {
                   scores.near_buoy_tracked, scores.confirmed_s, scores.num_hidden, scores.num_found_again, scores.position_nees, scores.velocity_nees,
                   scores.num_things_with_covariance, scores.num_bad_covariances, scores.standing_speed_mps, scores.num_standing,
                   scores.num_called_moving, scores.speed_error_mps, scores.course_error_deg, scores.called_standing, scores.center_error_m,
-                  scores.cpa_error_m, scores.tcpa_error_s, scores.num_crossings, scores.num_crossings_untracked, scores.calibration,
-                  scores.num_alerts, scores.warned_ahead_s, scores.warned_after_s, scores.alerts_of_pass);
+                  scores.cpa_error_m, scores.tcpa_error_s, scores.num_crossings, scores.num_crossings_untracked, scores.num_crossings_turning,
+                  scores.calibration, scores.num_alerts, scores.warned_ahead_s, scores.warned_after_s, scores.alerts_of_pass);
 }
 
 }  // namespace

@@ -109,6 +109,7 @@ struct TrackScores {
   Mean tcpa_error_s;
   std::int64_t num_crossings = 0;
   std::int64_t num_crossings_untracked = 0;
+  std::int64_t num_crossings_turning = 0;  // left out: what turns keeps no course
   // Of all that comes nearer, at 1 m/s or more, 3 s after its first track; truly, both keep course and speed.
   Calibration calibration;
 

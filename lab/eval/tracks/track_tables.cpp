@@ -92,14 +92,14 @@ NamedTable States(const std::vector<TrackRow>& rows) {
 }
 
 NamedTable Approaches(const std::vector<TrackRow>& rows) {
-  Table table({"scene", "tracker", "crossings", "untracked", "cpa_m", "tcpa_s", "probabilities", "calibration", "passes", "warned_ahead_least_s",
-               "warned_after_most_s", "alerts"});
+  Table table({"scene", "tracker", "crossings", "untracked", "turning", "cpa_m", "tcpa_s", "probabilities", "calibration", "passes",
+               "warned_ahead_least_s", "warned_after_most_s", "alerts"});
   for (const auto& [scene, row] : rows) {
     const auto& scores = row.scores;
-    table.Add({scene, row.tracker, Number(scores.num_crossings), Number(scores.num_crossings_untracked), Number(scores.cpa_error_m.value(), 2),
-               Number(scores.tcpa_error_s.value(), 2), Number(scores.calibration.count()), Number(scores.calibration.Error(), 3),
-               Count(scores.warned_ahead_s.count()), Percentile(scores.warned_ahead_s, 0, 1), Percentile(scores.warned_after_s, 100, 1),
-               Number(scores.num_alerts)});
+    table.Add({scene, row.tracker, Number(scores.num_crossings), Number(scores.num_crossings_untracked), Number(scores.num_crossings_turning),
+               Number(scores.cpa_error_m.value(), 2), Number(scores.tcpa_error_s.value(), 2), Number(scores.calibration.count()),
+               Number(scores.calibration.Error(), 3), Count(scores.warned_ahead_s.count()), Percentile(scores.warned_ahead_s, 0, 1),
+               Percentile(scores.warned_after_s, 100, 1), Number(scores.num_alerts)});
   }
   return {"tracks_approaches", "tracks: closest approach, and what was warned of", std::move(table)};
 }

@@ -80,8 +80,7 @@ void Step::Miss(Followed& track) {
   if (track.detection <= 0.0) return;                                      // it could not have been seen
   if (!is_sight_known_ && known_.had_sight && track.is_confirmed) return;  // what was looked through is lost: nobody knows
   // What hides a known thing for a scan (a wave, a roll of the boat) hides it for a while.
-  const bool is_moving = track.body && track.body->IsMoving(0.5);
-  const double known = is_moving ? 0.0 : std::min(1.0, track.num_hits / kMissHits);
+  const double known = std::min(1.0, track.num_hits / kMissHits);
   const double weight = 1.0 - known * (1.0 - std::min(1.0, dt_s_ / kMissS));
   track.log_odds = std::max(kLeastExistence, track.log_odds + weight * Log(1.0 - track.detection));
   if (track.detection > 0.5) Remember(track, false);

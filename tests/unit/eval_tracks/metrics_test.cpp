@@ -218,6 +218,26 @@ TEST(TrackMetrics, ApproachIsComparedTenSecondsBefore) {
   EXPECT_LT(scores.tcpa_error_s.value(), 1.0);
 }
 
+TEST(TrackMetrics, WhereEitherTurnsThereIsNoTrueApproach) {
+  for (const bool own_turns : {true, false}) {
+    SCOPED_TRACE(own_turns ? "own boat" : "the other");
+    Case run;
+    for (int n = 0; n < 30; ++n) {
+      // By 3 deg/s.
+      const double turned_rad = 0.1 * n * 3.0 / 57.3;
+      const Vector2d turned(std::sin(turned_rad), std::cos(turned_rad));
+      const Vector2d center_m(48.0 - 0.4 * n, 20.0);
+      const Vector2d velocity_mps = own_turns ? Vector2d(-4.0, 0.0) : Vector2d(-4.0 * turned.y(), 4.0 * turned.x());
+      run.Add({ThingAt(1, center_m, 20, velocity_mps)}, {TrackAt(1, center_m, velocity_mps)});
+      run.truth.back().own = TrueBoat{SquareAt({0.0, 0.0}), own_turns ? Vector2d(0.1 * turned) : Vector2d(0.0, 0.0)};
+    }
+    const auto scores = run.Score();
+    EXPECT_EQ(scores.num_crossings, 0);
+    EXPECT_EQ(scores.num_crossings_turning, 1);
+    EXPECT_EQ(scores.cpa_error_m.count, 0);
+  }
+}
+
 TEST(TrackMetrics, StatedApproachCounts) {
   Case run;
   for (int n = 0; n < 30; ++n) {
