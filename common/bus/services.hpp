@@ -69,7 +69,7 @@ inline constexpr std::array kServices{
 
 constexpr bool Publishes(const ServiceRow& service, const Channel& channel) { return channel.publisher == service.role; }
 
-/// Who publishes the channel, for people: the service that fills the role, or the word of the channel table where none does.
+/// The publisher of a channel, for people: the service that fills the role, or the word of the channel table where none does.
 constexpr std::string_view PublisherName(const Channel& channel) {
   for (const auto& service : kServices) {
     if (Publishes(service, channel)) return service.name;

@@ -124,8 +124,8 @@ StreamGuard::Decision StreamGuard::Weigh(const StreamPlace& place, Time now, std
   return {Held::kRefuse, Act::kRefuse, 0};
 }
 
-// Whether what is held goes on where the kept stream ended, by its numbers and times. So it is when a reader stood still, and more was lost than its
-// queue held: until some time has passed nothing explains the jump, and then each message fits in both.
+// Whether the held stream goes on where the kept stream ended, by its numbers. It does when a reader stood still and more was lost than its queue
+// held: nothing explains the jump at first, and then each message fits in both.
 bool StreamGuard::IsOtherKeptGoingOn() const {
   const double gap_us = GapUs(kept_->last, other_->first);
   if (other_->first.seq <= kept_->last.seq || gap_us < kQueueUs) return false;
@@ -212,14 +212,14 @@ bool StreamGuard::IsPlausibleLoss(const Stream& stream, const StreamPlace& place
   const auto number = static_cast<double>(distance);
   if (IsEven(stream)) {
     const double tolerance = (has_rising_times_ ? 0.25 : 0.5) + 0.25 * number;
-    // More time than messages: the stream paused, which shows in their receipt too. Else the clock is another computer's.
+    // More time than messages: the stream paused, and its receipt shows the pause too. Else the clock is another computer's.
     const bool has_time = measured_us <= (number + tolerance) * stream.period_us || measured_us <= kPause * received_us;
     return has_time && (number - tolerance) * stream.period_us <= gap_us;
   }
   return number <= MostWithin(gap_us);
 }
 
-// Of a message that follows in both: > 0 it is of the kept stream, < 0 of the other, 0 nothing tells.
+// Of a message that follows in both streams: > 0 it is of the kept one, < 0 of the held one, 0 undecided.
 int StreamGuard::Nearer(const StreamPlace& place, Time now) const {
   // Without a period: a program does not start again within so short a time.
   constexpr std::chrono::milliseconds kShortestRestart(300);
@@ -315,7 +315,7 @@ StreamGuard::Decision StreamGuard::TakeInNone(const StreamPlace& place, Time now
   return decision;
 }
 
-// One alone is a number gone wrong; two within the time that makes a silence are of somebody who speaks.
+// A single message is a wrong number; two within the time that makes a silence are a second publisher.
 void StreamGuard::NoteRefused(std::int64_t number, Time now, std::int64_t mark, Time began) {
   num_refused_ += number;
   const bool is_second = number > 1 || (last_refused_ && now - last_refused_->time < SilenceOf(*kept_));

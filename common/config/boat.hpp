@@ -1,4 +1,4 @@
-// boat.txtpb as checked values, for the services that need facts of the boat; and what its numbers mean, in words for who stands on the boat.
+// boat.txtpb as checked values, for the services that need facts of the boat; and its numbers in words, for a person on the boat.
 #pragma once
 
 #include <filesystem>

@@ -111,7 +111,7 @@ std::string RangeFault(const google::protobuf::FieldOptions& options, double val
   return "";
 }
 
-// Walks a parsed message and its positions in the text, and collects what the schema's options forbid.
+// Walks a parsed message and its positions in the text, and collects violations of the schema's options.
 class Checker {
  public:
   /// @param refused  fields whose values were wrong by themselves, by path and line of their message: they are set, but not here
@@ -152,7 +152,7 @@ class Checker {
   std::vector<TextFault>& faults_;
 };
 
-// What begins the files of editors that mark their coding; empty = none.
+// The first bytes of files whose editor marks their coding; empty = none.
 std::string ByteOrderMark(const std::string& text) {
   if (text.starts_with("\xEF\xBB\xBF"))
     return "begins with a byte order mark (EF BB BF): save it as UTF-8 without one (\"UTF-8\", not \"UTF-8 with BOM\")";
@@ -215,7 +215,7 @@ void ParseText(const std::string& text, const std::string& name, Message& messag
   auto positions = std::make_unique<TextFormat::ParseInfoTree>();
   bool is_parsed = parse(text, *positions);
   if (!is_parsed) {
-    // The parser stops at the first fault. What else is wrong is found without the statements that are wrong by themselves.
+    // The parser stops at the first fault. Further faults are found without the statements that are wrong by themselves.
     salvaged = SalvageText(text, *message.GetDescriptor());
     if (!salvaged.faults.empty()) {
       faults.clear();

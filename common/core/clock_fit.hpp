@@ -34,7 +34,7 @@ class ClockFit {
 
   bool is_empty() const { return bins_.empty(); }
 
-  /// What came in time came by one offset for three seconds of both clocks: it is that of the clocks and not of a queue that is being drained.
+  /// Messages came in time by one offset for three seconds of both clocks: it is the offset of the clocks, not of a queue that is being drained.
   bool is_settled() const { return is_settled_; }
 
  private:

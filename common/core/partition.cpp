@@ -143,7 +143,7 @@ void Partition::Enter(std::int32_t edge) {
   edge_slot_[SlotOf(one, other)] = edge;
 }
 
-// What stands behind it and could stand nearer to its first slot moves up, so that no look-up ends too soon.
+// An edge behind it that could stand nearer to its first slot moves up, so that no look-up ends too soon.
 void Partition::Leave(std::int32_t edge) {
   const std::size_t mask = edge_slot_.size() - 1;
   const auto [one, other] = edges_[At(edge)].group;

@@ -17,7 +17,7 @@ struct EvidencePair {
   float gap_m = 0.0F;  // of equal evidence, the least gap comes first
 };
 
-/// What speaks for two groups to be one: the mean of the evidence of the pairs between them, or its sum.
+/// The evidence that two groups are one: the mean or the sum of the evidence of the pairs between them.
 enum class Linkage { kMean, kSum };
 
 /// Merges the two groups with the most evidence between them, again and again, while that is above a threshold. Pairs that are not given are no

@@ -20,13 +20,13 @@ struct Datum {
   double longitude_deg = kNan;
   double ellipsoid_height_m = kNan;
 
-  /// The map frame; a height that is not known counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of distance.
+  /// The map frame; an unknown height counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of distance.
   LocalFrame Map() const;
   /// The same map frame, bit for bit. A datum that is not known equals none.
   bool IsSameAs(const Datum& other) const;
 };
 
-/// What of a pose places a point: where the vessel frame is in the map frame.
+/// The part of a pose that places a point: the vessel frame in the map frame.
 struct Place {
   bool is_placed = false;  // position and heading are known; else position_map_m and heading_rad are not to be used
   Eigen::Vector3d position_map_m = Eigen::Vector3d::Zero();

@@ -206,7 +206,7 @@ void Measurer::MeasureWaterline(const Scan& scan, std::span<const Return> return
   }
 }
 
-// What there are too many of is put aside with the memory of its corners.
+// Surplus segments are put aside with the memory of their corners.
 void Measurer::Resize(std::size_t count, std::vector<Segment>& segments) {
   while (segments.size() > count) {
     spare_.push_back(std::move(segments.back()));

@@ -1,4 +1,4 @@
-// The fifth step: what is said of each segment.
+// The fifth step: the measurements of each segment.
 #pragma once
 
 #include <Eigen/Core>

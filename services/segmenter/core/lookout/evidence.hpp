@@ -37,7 +37,7 @@ struct NamedSum {
   std::span<const NamedTree> trees;
 };
 
-/// What a sum looks at: its name and the names of its features in the order of their values.
+/// The features of a sum: its name and the names of its features in the order of their values.
 struct EvidenceLayout {
   std::string_view name;
   std::span<const std::string_view> features;
@@ -60,8 +60,8 @@ class Evidence {
   using Block = std::array<const float*, kBlock>;  // each [features of the layout]
   std::array<float, kBlock> Of(const Block& features) const;
 
-  /// What each feature adds to Base(), to answer "why?". The splits of a tree are asked one after the other; what an answer changes in the mean of
-  /// the leaves that are still possible is the feature's.
+  /// The part that each feature adds to Base(), to answer "why?". The splits of a tree are asked one after the other; the change of the mean of the
+  /// leaves that are still possible is the feature's.
   ///
   /// @param terms  [features of the layout] Base() and their sum are Of(features), but for rounding
   void Terms(std::span<const float> features, std::span<float> terms) const;

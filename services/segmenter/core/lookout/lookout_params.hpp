@@ -1,4 +1,4 @@
-// What the lookout method goes by. Lengths in metres, "per range" in metres per metre of distance.
+// Parameters of the lookout method. Lengths in metres, "per range" in metres per metre of distance.
 #pragma once
 
 #include <array>
@@ -36,10 +36,10 @@ struct MergeParams {
 struct LookoutParams {
   // Pieces: returns that lie so close that nothing passes between them.
   Reach link{0.3, 0.01};
-  // What is beyond doubt first; then the rest, by what the larger pieces look like. Reaches and thresholds belong to the evidence, which is fitted
-  // with them; they were chosen on the families of scenes (DECISIONS.md).
+  // Certain pairs merge first; then the rest, by features of the larger pieces. Reaches and thresholds belong to the evidence, which is fitted with
+  // them; they were chosen on the families of scenes (DECISIONS.md).
   std::array<MergeParams, kNumMerges> merges{{{{1.0, 0.03}, 2.0}, {{2.5, 0.08}, 1.0}, {{6.0, 0.12}, 0.0, true}}};
-  // A group of two returns or more is sure that is no clutter with a greater probability; what is sure is land that is so with a greater one.
+  // A group of two returns or more is sure when its probability to be no clutter is greater than this; a sure group is land when that probability is.
   double land_probability = 0.7;
   double sure_probability = 0.5;
   std::array<Evidence, kNumSums> evidence = DefaultEvidences();

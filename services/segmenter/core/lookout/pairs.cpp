@@ -25,11 +25,11 @@ constexpr Reach kReachToFew{0.5, 0.08};
 // bound goes by whole columns, so no order decides. Fitted: with 48 instead of 160 canals lose pairs that they need.
 constexpr int kMostFewBeside = 8;
 constexpr int kMostLargerBeside = 160;
-// The same of what stands behind in one column.
+// The same of the pieces behind it in one column.
 constexpr int kMostBehind = 32;
 // Columns at each end of a gap in which its beams are looked at.
 constexpr int kBeamColumns = 16;
-// Twice the most pairs and more: with what the last look adds it is not full.
+// Twice the most pairs and more: the pairs of the last look do not fill it.
 constexpr std::size_t kSlots = std::bit_ceil(2 * PairFinder::kMostPairs);
 
 // Shares of the reach, tried one after the other until the bounds hold; at last there are no pairs. All of the scan has the same, so that neither
@@ -173,7 +173,7 @@ bool PairFinder::IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int c
   return 2 * num_hidden > entry.max_ring - entry.min_ring;
 }
 
-// From where a piece ends in a column, on to what stands beside it on both sides.
+// From where a piece ends in a column, on to the pieces beside it on both sides.
 void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches, const Shown& from) {
   const Steps& own = steps_[static_cast<std::size_t>(from.entry)];
   ++num_looks_;
@@ -190,7 +190,7 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
   const int num_steps = columns_of(reach_m);
   const auto window_of = [&](double hidden_m) {
     const auto widest_m = static_cast<float>(reach_m + hidden_m);
-    // What is nearer of two is at most as far as this piece.
+    // The nearer piece of a pair determines the search radius, so this piece's far edge bounds it.
     const double most_m = (is_few ? std::min(reaches.any.At(far_m), reaches.of_few.At(far_m)) : reaches.any.At(far_m)) + hidden_m;
     return Window{from.near.range_m - widest_m, from.far.range_m + widest_m, static_cast<float>(most_m * most_m * kRoundedUp), hidden_m};
   };
@@ -203,7 +203,7 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
       MeetBeside(few_, window, from, {1, std::min(num_steps, most_steps), direction}, reaches.any, reaches.of_few, kMostFewBeside);
       continue;
     }
-    // What is larger looks for what is of few returns, not the other way round.
+    // A larger piece looks for pieces of few returns, not the other way round.
     const auto is_hidden = [&](int step) { return IsHidden(grid, entry, grid.Wrap(entry.column + direction * step)); };
     const int last_step = std::min(num_steps, most_steps);
     int step = 1;
@@ -231,8 +231,8 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
   }
 }
 
-// Meets what is within both reaches, of which the first is longer by what is hidden, until so many have been met: then no further column is looked
-// at.
+// Meets pieces within both reaches, of which the first is longer by the hidden part of the gap, until so many have been met: then no further column
+// is looked at.
 PairFinder::Met PairFinder::MeetBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach,
                                        const Reach& narrower, int most) {
   const int num_columns = columns.num_columns();
@@ -277,7 +277,7 @@ PairFinder::Met PairFinder::MeetBeside(const Columns& columns, const Window& win
   return met;
 }
 
-// The same of one column, where a branch costs less than going twice through what it shows.
+// The same of one column, where a branch costs less than two passes through its pieces.
 int PairFinder::MeetIn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower) {
   int num_met = 0;
   const std::size_t end = columns.begin_of_column[static_cast<std::size_t>(column) + 1];
@@ -291,7 +291,7 @@ int PairFinder::MeetIn(const Columns& columns, int column, const Window& window,
 }
 
 bool PairFinder::MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower) {
-  // Least distance of what the two show, seen from above, and between which returns.
+  // Least distance of the two pieces, seen from above, and between which returns.
   float squared_m2 = SquaredPlanDistance(from.near, beside.near);
   const LevelPoint* one = &from.near;
   const LevelPoint* other = &beside.near;

@@ -1,4 +1,4 @@
-// Pairs of neighbouring pieces, and what is measured of each pair: the features that say whether the two are one.
+// Pairs of neighbouring pieces, and the features of each pair that say whether the two are one.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace lookout::segmenter {
 
-/// Of a pair. "Small" and "large" are the one of less and of greater width, "front" and "back" what is nearer and farther where the two come closest.
-/// Heights are over the water at rest. None depends on which piece is named first.
+/// Features of a pair. "Small" and "large" are the pieces of less and of greater width, "front" and "back" the nearer and the farther one where they
+/// come closest. Heights are over the water at rest. None depends on which piece is named first.
 enum class PairFeature : std::uint8_t {
   kRange,           // m, where the two come closest
   kGap,             // m, seen from above
@@ -68,8 +68,8 @@ struct PiecePair {
 
 class PairFinder {
  public:
-  /// A scan gives no more pairs in a round, and none are looked for with more looks at columns and at what stands behind and beside. Normal scans
-  /// stay below: in rain and fog they take 2600 pairs and 180 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
+  /// A scan gives no more pairs in a round, and none are looked for with more looks at columns and at pieces behind and beside. Normal scans stay
+  /// below: in rain and fog they take 2600 pairs and 180 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
   /// hold.
   static constexpr std::size_t kMostPairs = 6000;
   static constexpr std::int64_t kMostLooks = 400'000;
@@ -82,11 +82,11 @@ class PairFinder {
   /// Pairs that come within `reach` of each other: in a column one behind the other, or beside each other.
   /// Cost: about proportional to the columns of all pieces, and bounded. Allocates nothing once it has seen a scan of that size.
   ///
-  /// @param reaches_behind  what something nearer hides of a gap does not count for the reach
+  /// @param reaches_behind  the part of a gap that something nearer hides does not count for the reach
   std::span<const PiecePair> Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, bool reaches_behind);
 
  private:
-  // What is within reach: of each other; of each other where both are of few returns; of something larger where one is.
+  // Reach of two pieces; of two pieces of few returns; of a larger piece and one of few returns.
   struct Reaches {
     Reach any;
     Reach of_few;
@@ -116,7 +116,7 @@ class PairFinder {
     std::int32_t num_faced = 0;
   };
 
-  // Where what stands beside a piece may be within reach.
+  // Where pieces beside a piece may be within reach.
   struct Window {
     float nearest_m;
     float farthest_m;

@@ -9,7 +9,7 @@ namespace lookout::segmenter {
 
 namespace {
 
-// Less is rounding of coordinates: half of what a VLP-16 resolves.
+// A smaller difference is rounding of coordinates: half of the resolution of a VLP-16.
 constexpr double kLeastLineM = 1e-3;
 constexpr std::int32_t kNoPiece = -1;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
