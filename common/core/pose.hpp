@@ -62,7 +62,7 @@ class PoseHistory {
 
   const Pose* newest() const { return poses_.empty() ? nullptr : &poses_.back(); }
 
-  /// The pose at `time`: that of the grid where there is one, else between its two neighbours, linear, heading the short way round.
+  /// The pose at `time`: the grid's where there is one, else between its two neighbours, linear, heading the short way round.
   ///
   /// @return nullopt when `time` is not between two poses at most kMaxBracket apart. It is placed when both neighbours are, in one datum.
   /// Cost: constant on an even grid; logarithmic in the length of the history where poses are missing.
@@ -77,7 +77,7 @@ class PoseHistory {
  private:
   // Index of the first pose at or after `time`; the number of poses when there is none.
   std::size_t FirstNotBefore(Utime time) const;
-  // The neighbours of a time and its share of the way between them; both are one where it is that of the grid.
+  // The neighbours of a time and its share of the way between them; both are one at a time of the grid.
   struct Bracket {
     const Pose& before;
     const Pose& after;

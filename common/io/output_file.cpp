@@ -206,7 +206,7 @@ struct OutputFile::Implementation final : public std::streambuf {
       close(made);
       throw;
     }
-    // What replaces a file is open to the same people. Some file systems know no modes.
+    // The new file is open to the same people as the replaced one. Some file systems know no modes.
     const auto replaced = StateOfName(file);
     if (replaced && S_ISREG(replaced->st_mode)) static_cast<void>(fchmod(made, replaced->st_mode & 0777));
     descriptor = made;

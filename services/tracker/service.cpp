@@ -278,7 +278,7 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
     if (found != given_.script->orders.end()) orders_ = found->second;
   } else if (memory_->picture != nullptr) {
     const auto kept = memory_->kept_names.Take(label_->end_time, label_->datum, memory_->picture->tracks, memory_->look_out.names());
-    // What the process before left is from a file.
+    // The alerts that the process before left come from a file.
     std::ranges::copy_if(kept, std::back_inserter(orders_), [](const Order& order) { return !messages::FaultOf(ToMessage(order)); });
   }
   auto taken = std::exchange(orders_, {});
@@ -290,7 +290,7 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
   return taken;
 }
 
-// What of the guard zone nobody looks into is an alert like another: decided by the scans, so that a replay gives the same.
+// A part of the guard zone that nobody looks into is an alert like another: decided by the scans, so that a replay gives the same.
 std::optional<Danger> Service::LookAtZone(const ScanInput& input) {
   auto& zone_sight = memory_->zone_sight;
   if (input.sweep) zone_sight.Update(input.end_time, *input.sweep);

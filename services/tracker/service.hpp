@@ -29,7 +29,7 @@
 
 namespace lookout::tracker {
 
-/// What is known of the input beforehand. Live: nothing.
+/// Facts of the input, known beforehand. Live: none.
 struct Given {
   Gatherer::Sources sources = {};
   std::optional<Script> script = {};                                 // of the live run that is replayed, where its log holds ALERTS
@@ -44,8 +44,8 @@ class Service {
   /// Live only: host time has come so far. Ten times a second or more.
   void AdvanceTo(Utime host_time);
 
-  /// End of input: what waits is used as it is; where a live run is replayed, as far as that used it. A live process that is stopped does not call
-  /// it: what it would make of half a scan no replay, which hears the rest of it, could know.
+  /// End of input: waiting scans are used as they are; where a live run is replayed, as far as that used them. A live process that is stopped does
+  /// not call it: its result of half a scan no replay, which hears the rest of it, could know.
   void Finish();
 
   /// Scans that wait for POSE, LIDAR_SCAN or SEGMENTS.

@@ -34,11 +34,11 @@ double WrapTilt(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapTo
 // The first of them that is known.
 double Or(double value, double otherwise) { return std::isnan(value) ? otherwise : value; }
 
-// A boat at rest has no course: what a receiver says there is the direction of its noise. Twice velocity_sd_mps of navigator.proto.
+// A boat at rest has no course: a receiver states the direction of its noise there. Twice velocity_sd_mps of navigator.proto.
 constexpr double kRestMps = 0.2;
 double CourseOf(double speed_mps, double course_rad) { return speed_mps < kRestMps ? kNan : course_rad; }
 
-// What receivers say that have no place yet, or have lost it, whatever their status. As precise as a sentence says a place, and a boat that is there
+// Values of receivers that have no place yet, or have lost it, whatever their status. As precise as a sentence states a place; a boat that is there
 // misses a fix.
 bool IsNull(const GeodeticPlace& place) {
   constexpr double kMetreDeg = 1e-5;
@@ -134,7 +134,7 @@ Reading Interpreter::Read(const Item& item) {
   if (parsed.sentence.type != SentenceType::kOther) {
     ++source.num_understood;
     ++counts_["understood_sentence"];
-    // What is only recorded does not correct the clock either.
+    // An input that is only recorded does not correct the clock either.
     if (source.params.role == Role::kNothing) {
       ++counts_["outside_role"];
       return {};
@@ -302,7 +302,7 @@ Reading Interpreter::ReadVelocity(const Item& item, Source& source, const Senten
   // Behind the fix of its epoch it is of the same instant; it has no time of its own.
   if (source.null_fix && item.time - *source.null_fix <= kMaxNullAge) return {};  // a receiver without a place has no speed
   const bool is_of_epoch = source.epoch && item.time - source.epoch->fix.when.arrival <= UtcClock::kBurst;
-  // What RMC says of the same instant is the same measurement.
+  // RMC of the same instant is the same measurement.
   if (is_of_epoch && !std::isnan(source.epoch->fix.speed_mps)) return {};
   const auto when = is_of_epoch ? std::optional(source.epoch->fix.when) : WhenArrived(item, source, vtg.type);
   if (!when) return {};

@@ -1,4 +1,4 @@
-// What the sentences of all sources measured, and when: from an item to measurements.
+// The measurements of the sentences of all sources, and their times: from an item to measurements.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ enum class Role {
   kNothing,   // recorded only
 };
 
-/// What config says of one source of sentences, as far as its sentences are read by it.
+/// The settings of one source of sentences, as far as they concern its sentences.
 struct SourceParams {
   std::string name;  // as in NAV_RAW
   Role role = Role::kAll;
@@ -45,7 +45,7 @@ struct SourceParams {
   std::optional<double> declination_rad;
 };
 
-/// What one sentence measured.
+/// The measurements of one sentence.
 struct Reading {
   std::optional<GnssFix> fix;
   std::optional<Attitude> attitude;
@@ -81,7 +81,7 @@ class Interpreter {
   std::vector<Counter> counters() const;
 
  private:
-  /// What is known of the epoch of a receiver.
+  /// The known values of the epoch of a receiver.
   struct Epoch {
     GnssFix fix;
     bool has_gga = false;

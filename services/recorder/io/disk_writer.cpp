@@ -21,7 +21,7 @@ namespace {
 using io::ErrnoText;
 using io::IsNameOf;
 
-// What waits goes to the kernel so often: with the time of a sync below the second that is promised.
+// Waiting blocks go to the kernel so often: with the time of a sync below the promised second.
 constexpr std::chrono::milliseconds kWritePeriod(100);
 constexpr std::chrono::milliseconds kSyncPeriod(500);
 // Events are gathered in blocks of this size; one full block wakes the thread early.
@@ -260,7 +260,7 @@ bool DiskWriter::OpenFile(const std::string& stem) {
   return true;
 }
 
-// What is torn is cut off: the log ends with a whole event. If somebody has cut it as well it is not made longer, and what was lost is counted.
+// A torn event is cut off: the log ends with a complete event. If somebody has cut the file as well it is not made longer, and the loss is counted.
 // @param torn_bytes  of the last block, that were taken
 void DiskWriter::CutTorn(std::int64_t torn_bytes, std::string& reason) {
   struct stat own {};
@@ -302,7 +302,7 @@ void DiskWriter::CheckFile(const Block* last_block) {
   const bool is_name_there = lstat(file_.c_str(), &named) == 0;
   const std::int64_t size_bytes = own.st_nlink == 0 ? 0 : own.st_size;
   if (size_bytes < file_bytes_) {
-    // Cut to `kept_bytes`, behind which what was written since stands.
+    // Cut to `kept_bytes`, behind which the later bytes stand.
     const auto last_bytes = last_block == nullptr ? 0 : static_cast<std::int64_t>(last_block->bytes.size());
     const bool has_last = last_block != nullptr && size_bytes >= last_bytes;
     const auto kept_bytes = size_bytes - (has_last ? last_bytes : 0);

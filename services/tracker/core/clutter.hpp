@@ -1,4 +1,4 @@
-// How dense clutter is where: learnt from what did not last.
+// Density of clutter by place, learnt from segments that did not last.
 #pragma once
 
 #include <Eigen/Core>

@@ -27,7 +27,7 @@ constexpr double kReciprocalRad = DegToRad(22.5);
 // Rule 7 a: "if there is any doubt such risk shall be deemed to exist".
 constexpr double kDoubt = 0.05;
 
-// No tracked hull is known better; and what is known too well would need many nodes.
+// No tracked hull is known better; and smaller deviations would need many nodes.
 constexpr double kLeastSdM = 0.05;
 // Beyond so many deviations there is nothing: 6e-5 of a normal distribution.
 constexpr double kReach = 4.0;
@@ -129,7 +129,7 @@ Approach ApproachOf(Corners polygon, const Eigen::Vector2d& velocity_mps, double
   return approach;
 }
 
-// The region of relative positions that are too near: a polygon and all within the limit of it. In and out of it goes the relative position.
+// The region of relative positions that are too near: a polygon and all places within the limit of it. The relative position enters and leaves it.
 class Passage {
  public:
   Passage(Corners difference, const Eigen::Vector2d& velocity_mps, const RelativeCovariance& covariance, const EncounterParams& params)

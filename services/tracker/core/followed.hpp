@@ -75,8 +75,8 @@ struct Followed {
   double detection = 0.0;                   // probability, this scan
   Encounter overtaking = Encounter::kNone;  // one overtakes the other, until they are past and clear
 
-  // That it is a thing and no clutter that lasts (crest, foam, drops): what its segments look like, how often it was seen, and how steadily it stands
-  // or moves. Fitted: logistic regression; and nothing but things, and what is on the own boat, stands still to some centimetres from scan to scan
+  // That it is a thing and no clutter that lasts (crest, foam, drops): the mean log odds of its segments, how often it was seen, and how steadily it
+  // stands or moves. Fitted: logistic regression; besides, only things, and parts of the own boat, stand still to some centimetres from scan to scan
   // (DECISIONS.md).
   double ThingLogOdds() const {
     constexpr double kLeastStepM = 0.05;
@@ -102,7 +102,8 @@ struct Followed {
   }
   double Existence() const { return Sigmoid(log_odds) * Sigmoid(ThingLogOdds()); }
   // That it is no crest, which looks like a thing for as long as it lives. Crests are low, run, and come up in water that was seen to be empty; none
-  // of this says anything of what has lived longer than they do. Fitted: logistic regression; what came up counts in full (DECISIONS.md).
+  // of these facts counts for a track that has lived longer than a crest does. Fitted: logistic regression; the log odds of coming up count in full
+  // (DECISIONS.md).
   double NoCrestLogOdds() const {
     constexpr double kHighM = 1.0;       // higher than any crest
     constexpr double kLowM = 0.5;        // as low as most
@@ -121,7 +122,7 @@ struct Followed {
   double Probability() const { return Existence() * Sigmoid(NoCrestLogOdds()); }
   double UnseenS(Utime now) const { return ToSeconds(now - seen); }
 
-  // Who it came of, or what became of it: the newest of many.
+  // Tracks that it came from or became: the newest of many.
   static void Relate(std::vector<std::pair<std::int64_t, Utime>>& relatives, std::int64_t other, Utime time) {
     constexpr std::size_t kMostRelatives = 100;
     if (relatives.size() == kMostRelatives) relatives.erase(relatives.begin());

@@ -15,7 +15,7 @@ constexpr int kPerhapsAgainst = 3;
 constexpr int kLookedThrough = 8;
 constexpr int kMost = 60;
 constexpr int kIsLand = 12;
-// What stands low is hardly ever looked through, but over.
+// Beams seldom pass through low land, but over it.
 constexpr double kLeastTopM = 0.3;
 constexpr double kBelowTopM = 0.2;
 

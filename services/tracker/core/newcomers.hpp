@@ -1,4 +1,4 @@
-// What is seen in the guard zone and has no track: for how long it has been at its place.
+// Things in the guard zone without a track: for how long each has been at its place.
 #pragma once
 
 #include <chrono>
@@ -25,7 +25,7 @@ class Newcomers {
   static constexpr std::size_t kMostKnown = 400;
 
   /// One scan. Cost: at most kMostPlaces x kMostKnown distances, sorted.
-  /// @return [places] seconds since something was seen there first; 0 of what is not followed
+  /// @return [places] seconds since something was seen there first; 0 of a place that is not followed
   std::vector<double> Update(Utime time, std::span<const DangerPlace> places);
 
   /// Places of scans, and known ones, that were dropped because there were too many.

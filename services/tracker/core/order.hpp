@@ -1,4 +1,4 @@
-// What a skipper tells the look-out to do.
+// An order of a skipper to the look-out.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the tracker takes of one scan. Values are valid: wire.cpp lets no others in.
+// The values of one scan that the tracker uses. They are valid: wire.cpp lets no others in.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -27,7 +27,7 @@ struct Seen {
   std::vector<Eigen::Vector2d> waterline_m;  // of land: open line
 };
 
-/// The beams of the scan: what was looked through. Column-major: ring fastest.
+/// The beams of the scan: which water was looked through. Column-major: ring fastest.
 struct Sweep {
   std::vector<float> elevation_rad;       // [rings] from the lowest up
   std::vector<float> azimuth_offset_rad;  // [rings]

@@ -145,7 +145,7 @@ bool Sight::Reaches(const Eigen::Vector2d& corner_m, double side_m) const {
 }
 
 bool Sight::IsFree(const Eigen::Vector2d& place_m, double top_m) const {
-  // What was there reached so far behind the place at most, where a beam passes it on a slant or the place is off.
+  // An object there reached so far behind the place at most, where a beam passes it on a slant or the place is off.
   constexpr double kBehindM = 1.5;
   constexpr double kMostBesideRad = 0.01;
   if (sweep_ == nullptr) return false;

@@ -1,4 +1,4 @@
-// What a turn does to where a boat will be: how fast the own boat turns, and closest approach while either boat turns.
+// Turns: how fast the own boat turns, and closest approach while either boat turns.
 #pragma once
 
 #include <Eigen/Core>

@@ -16,7 +16,7 @@ using filter::State;
 
 // Satellites are above only, so height is worse than position: VDOP is about one and a half to two times HDOP.
 constexpr double kVerticalFactor = 2.0;
-// What is kept beyond the greatest latency.
+// History kept beyond the greatest latency.
 constexpr std::chrono::microseconds kMoreHistory = 1s;
 // A sample of the IMU stands for no longer than this: five of a slow one (50 Hz).
 constexpr std::chrono::microseconds kMaxSampleAge = 100ms;
@@ -136,7 +136,7 @@ Pose ToPose(const State& state, const std::optional<GeodeticPlace>& datum, const
   return pose;
 }
 
-// "no position fix for 3 s, no heading for 2 s" of those that came and do not come any more; empty = none.
+// "no position fix for 3 s, no heading for 2 s" of inputs that came and have stopped; empty = none.
 std::string StoppedInputs(const State& state) {
   std::string text;
   const auto say = [&](const filter::UseTimes& input, const char* name) {
@@ -364,7 +364,7 @@ void PoseFilter::Process(Event& event, std::size_t index) {
 
 void PoseFilter::ProcessUntil(Utime time) {
   for (; num_processed_ < events_.size() && events_[num_processed_].time <= time; ++num_processed_) {
-    // What was measured before the first item may still come.
+    // Measurements of before the first item may still come.
     if (!base_) {
       base_ = filter::FreshState(events_.front().time - params_.max_latency - kMoreHistory, params_.unmeasured_tilt_sd_rad);
       // Until the first fix says better.
