@@ -106,7 +106,7 @@ int EvaluateLog(const LogOptions& options) {
         Take<pose_t>(*event, *match);
       }
     }
-    // What it cannot decode of the channels above is counted there.
+    // Messages of the channels above that do not decode are counted there.
     if (tracks && !tracks->Add(channel, event->bytes) && channel == kTracksChannel) is_taken = false;
     if (is_taken) continue;
     const auto* known = bus::FindChannel(channel);

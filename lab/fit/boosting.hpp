@@ -21,7 +21,7 @@ struct BoostingParams {
   int num_bins = 64;       // thresholds of a feature are so many quantiles of its values
   /// Families whose rows are not fitted: trees are added up to where their loss is least. None, or without weight: all trees.
   std::vector<std::string> held_out = {};
-  /// Features that no split may ask for: what are they worth?
+  /// Features that no split may ask for, to see their worth.
   std::vector<std::string> dropped = {};
 };
 
@@ -42,8 +42,8 @@ struct FittedSum {
 FittedSum Fit(const Rows& rows, const BoostingParams& params);
 
 /// Platt's scaling (J. Platt, "Probabilistic Outputs for Support Vector Machines", 1999): factor and offset with which log odds of rows that were not
-/// fitted on say best what is true of them. {1, 0} where all rows or all log odds are alike (there was nothing to fit the others on), and where the
-/// best factor would turn more into less.
+/// fitted on fit the truth best. {1, 0} where all rows or all log odds are alike (there was nothing to fit the others on), and where the best factor
+/// would turn more into less.
 struct Calibration {
   double factor = 1.0;
   double offset = 0.0;

@@ -17,7 +17,7 @@ namespace lookout::plotter {
 
 class SignalKOutput : public Output {
  public:
-  /// Also of what stands still: who shows targets drops what comes no more.
+  /// Also of standing targets: a display drops targets that come no more.
   static constexpr std::chrono::seconds kTargetPeriod{1};
 
   SignalKOutput(const OutputParams& params, std::unique_ptr<Link> link, const std::string& boat);

@@ -39,7 +39,7 @@ struct Params {
 /// @throws config::ConfigError with every fault. Addresses, captures and the filter are texts here: LoadChecked checks them for who opens sources
 Params LoadParams(const std::filesystem::path& config_folder);
 
-/// The same, but fields that do not go together are added to `faults`, each as a line: for who has more to check and tells all at once.
+/// The same, but fields that do not go together are added to `faults`, each as a line: for a caller that has more to check and tells all at once.
 ///
 /// @throws config::ConfigError when the file is not of the schema
 Params LoadParams(const std::filesystem::path& config_folder, std::vector<std::string>& faults);

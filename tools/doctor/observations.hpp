@@ -1,4 +1,4 @@
-// What was observed, in plain values, so that each check can be tested without a boat.
+// Observations, in plain values, so that each check can be tested without a boat.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ struct BusSeen {
 /// The port of the bus, which LCM opens on every address of the computer.
 struct PortSeen {
   bool is_closed = false;  // by lookout-firewall: to other computers, but for the interface of the bus
-  // Who listens to it and is not of Lookout: "lcm-logger (pid 17)", "a program of user pi". No filter stands in front of it.
+  // Programs that listen to it and are not Lookout's: "lcm-logger (pid 17)", "a program of user pi". No filter stands in front of them.
   std::vector<std::string> without_filter;
 };
 
@@ -131,7 +131,7 @@ struct LookOutSeen {
   Utime alerts_heard{};
 };
 
-/// What the page needs of this computer, as far as this user may look.
+/// Needs of the page on this computer, as far as this user may look.
 struct PageSeen {
   bool is_port_taken = false;    // by anybody; ours while the page runs here
   std::string token_fault;       // empty: it is right, or will be made

@@ -36,7 +36,7 @@ inline constexpr int kExitUsage = 2;   // wrong command line or config
 
 /// Ends as failed, without output file, when the program is asked to stop (io::CatchStopSignals).
 ///
-/// @param errors  gets what went wrong and what was skipped, a line each
+/// @param errors  gets faults and skipped data, a line each
 /// @return exit code
 int Run(const Request& request, std::ostream& errors);
 

@@ -33,13 +33,13 @@ bool AreOnePlace(const MapThing& one, const MapThing& other, double apart_m) {
   return apart_m <= SamePlaceM(one.deviation_m, other.deviation_m) && AreOfOneThing(one.length_m, other.length_m);
 }
 
-// By what was seen last; what is gone, before what is not.
+// By when it was last seen; gone things before the others.
 bool IsOlder(const MapThing& one, const MapThing& other) {
   return std::tuple(!one.gone, one.seen, one.latitude_deg, one.longitude_deg) <
          std::tuple(!other.gone, other.seen, other.latitude_deg, other.longitude_deg);
 }
 
-// What was seen last says where it is and how it looks.
+// The last sighting gives place and look.
 MapThing Joined(MapThing older, MapThing newer) {
   if (older.seen > newer.seen) std::swap(older, newer);
   newer.first = std::min(newer.first, older.first);

@@ -19,8 +19,8 @@
 namespace lookout::log {
 
 /// LIDAR_PACKETS and NAV_RAW begin with a start mark and end with an end mark where the log holds all that their process consumed. Without a start
-/// mark what is computed first depends on what came before the log; without an end mark nobody knows what the live run made of the scan and the poses
-/// that were under way.
+/// mark the first results depend on messages before the log; without an end mark nobody knows the live run's results of the scan and the poses under
+/// way.
 class RunMarks {
  public:
   /// Whether messages of this channel can hold marks.

@@ -22,7 +22,7 @@ struct NearestNeighbourParams {
 };
 
 /// Obstacles that are sure, placed and not land. Of all pairs of track and obstacle within the gate the nearest is taken first, then the nearest of
-/// what is left; of equals the track and then the obstacle of lower id. What is left begins tracks.
+/// the remaining ones; of equals the track and then the obstacle of lower id. Remaining obstacles begin tracks.
 class NearestNeighbour final : public MultiObjectTracker {
  public:
   explicit NearestNeighbour(const NearestNeighbourParams& params = {}) : params_(params) {}

@@ -1,4 +1,4 @@
-// What a comparison of methods found: the numbers behind every table and plot of the report.
+// The results of a comparison of methods: the numbers behind every table and plot of the report.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What alerts are judged on: what is true after one scan, and what ALERTS say of it. Map frame: east, north at one datum.
+// Inputs of the judge of alerts: the truth after one scan, and its ALERTS. Map frame: east, north at one datum.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 
 namespace lookout::eval {
 
-/// What an alert names by its track.
+/// The track of an alert.
 struct AlertTrackPlace {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   Polygon outline_m;                                       // empty: the position alone is known

@@ -9,7 +9,7 @@
 
 namespace lookout::eval {
 
-/// What alerts scored on the runs of a scene.
+/// Scores of alerts on the runs of a scene.
 struct AlertRow {
   std::string scene;  // with "second world: " before it, or as it is
   AlertScores scores;

@@ -1,4 +1,4 @@
-// What is true after a scan, in the map frame of the boat, as alerts are judged on it.
+// The truth after a scan, in the map frame of the boat, by which alerts are judged.
 #pragma once
 
 #include <cstdint>

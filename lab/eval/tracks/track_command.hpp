@@ -17,7 +17,7 @@ struct TrackOptions : RunOptions {
   std::filesystem::path lost_file;  // what costs MOTA, a row of CSV for each scan and thing or track; empty = none
 };
 
-/// What stands beside the boat's own tracker in each table. A further tracker is a further line here.
+/// Trackers beside the boat's own in each table. A further tracker is a further line here.
 MultiObjectTrackers MakeTrackers();
 
 /// Runs all services on each scene and seed, and on each capture, and prints the tables to stdout, progress to stderr. @return exit code

@@ -29,7 +29,7 @@ constexpr double kWarningS = 10.0;
 constexpr double kTcpaStepS = 1.0;         // a TCPA that falls by more from one scan to the next does so by a turn
 constexpr double kLeastApproachMps = 1.0;  // slower, TCPA says little
 constexpr double kLeastPassMps = 0.3;      // slower, two keep company
-// What never had a track counts where it was there for twice the time in which 95 % should have one (1 s, 4 s).
+// A thing that never had a track counts where it was there for twice the time in which 95 % should have one (1 s, 4 s).
 constexpr std::array<double, 2> kLeastSeenS{1.0, 4.0};
 
 double SecondsBetween(std::int64_t from_us, std::int64_t to_us) { return static_cast<double>(to_us - from_us) * 1e-6; }

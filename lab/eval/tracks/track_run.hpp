@@ -80,7 +80,7 @@ class TrackRun {
     LabelScores labels;
     std::vector<std::vector<StatedAlert>> alerts;  // by scan
   };
-  // What waits for TRACKS.
+  // Scans that wait for TRACKS.
   struct Waiting {
     std::size_t index = 0;  // of the scan
     std::vector<LabelledReturn> returns;

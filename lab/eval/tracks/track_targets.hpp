@@ -1,4 +1,4 @@
-// What tracks shall reach, and what they reach: README.md, "Tracks".
+// Targets for tracks, and the reached values: TRACKS.md.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ struct TrackWorld {
   std::string over_all;          // what the row over all of them is called
 };
 
-/// A row for each target and world: what `tracker` has, whether that reaches the target, the scene that is farthest from it, and what `other` has.
-/// What no scene of a world shows has no row.
+/// A row for each target and world: the value of `tracker`, whether it reaches the target, the scene that is farthest from it, and the value of
+/// `other`. A target that no scene of a world shows has no row.
 NamedTable TargetTable(const std::vector<TrackWorld>& worlds, const std::string& tracker, const std::string& other);
 
 }  // namespace lookout::eval

@@ -199,7 +199,7 @@ class TrajectoryAssignment {
     }
   }
 
-  // What is cheapest from scan to scan.
+  // The cheapest assignment from scan to scan.
   void BeginByScan() {
     std::vector<int> held(truths_.size(), kNoPartner);
     std::vector<bool> had_one(truths_.size());
@@ -301,7 +301,7 @@ class TrajectoryAssignment {
     const auto assigned = CheapestAssignment(cost);
     for (std::size_t row = 0; row < rows.size(); ++row) {
       const auto k = static_cast<std::size_t>(assigned[row]);
-      // What saves nothing and was not held is no candidate, or none now.
+      // A pair that saves nothing and was not held is no candidate, or none now.
       const int estimate = k < columns.size() ? columns[k] : kNoPartner;
       held[rows[row]] = estimate == held[rows[row]] || truths_[rows[row]].GainAt(scan, estimate) > 0.0 ? estimate : kNoPartner;
     }

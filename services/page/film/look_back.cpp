@@ -100,7 +100,7 @@ struct LookBack::Implementation {
     if (std::exchange(end_told, end) != end && options.on_sources) options.on_sources();
   }
 
-  // What the disk's reserve leaves to the spool, and why that is too little. Where the room is not known writing tells.
+  // The room that the disk's reserve leaves to the spool, and why it is too little. Where the room is not known, writing will fail.
   std::string TakeRoom() {
     const auto free_bytes = options.free_bytes(options.spool_folder);
     room_bytes = options.max_bytes;
@@ -119,7 +119,7 @@ struct LookBack::Implementation {
     status.shortage.clear();
   }
 
-  // What was spooled goes back to the disk, and out of what is shown: nobody can read it any more.
+  // Spooled files go back to the disk, and out of the picture: nobody can read them any more.
   void GiveUpSpool() {
     if (spool.num_files() == 0) return;
     ClearSpool();
@@ -210,13 +210,13 @@ struct LookBack::Implementation {
     recording = Recording();  // the recorder's log holds what the spool held
   }
 
-  // What was read stays; the spool goes on.
+  // Entries that were read stay; the spool goes on.
   void StopFollowing() {
     followed.reset();
     is_following = false;
   }
 
-  // The first of those to follow. One that cannot be opened (it was removed meanwhile, or is not for us to read) is left out.
+  // The first log to follow. A log that cannot be opened (it was removed meanwhile, or is not readable) is left out.
   bool OpenNext() try {
     followed.emplace(to_follow.front(), true);
     followed_file = to_follow.front();
@@ -329,7 +329,7 @@ struct LookBack::Implementation {
   std::atomic<bool> is_stopping = false;
   std::atomic<bool> is_following = false;
 
-  // Of what is recorded. Held while a disk is read, never while one is written or a log is looked through.
+  // Guards the recordings. Held while a disk is read, never while one is written or a log is looked through.
   mutable std::mutex mutex;
   Recording recording;
 

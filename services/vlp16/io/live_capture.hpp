@@ -51,7 +51,7 @@ class LiveCapture final : public io::Source {
   Utime last_time() const override { return last_time_; }
   std::string fault() const override { return fault_; }
 
-  /// What is let through, as given to the kernel; empty while nothing can be captured.
+  /// The filter given to the kernel; empty while nothing can be captured.
   const std::string& filter() const { return filter_; }
 
   /// capture_kernel_drops, capture_interface_drops (reads the kernel's), capture_source_refused, capture_outages, capture_read_errors,
