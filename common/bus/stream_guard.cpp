@@ -107,13 +107,13 @@ StreamGuard::Decision StreamGuard::Weigh(const StreamPlace& place, Time now, std
   const Fit in_other = other_ ? FitOf(*other_, place, now) : Fit::kNo;
   if (in_kept == Fit::kNo && in_other == Fit::kNo) {
     // Silent: the next one, at once.
-    return is_kept_alive || other_ ? TakeInNone(place, now, mark) : Keep(place, now, mark);
+    return is_kept_alive || other_ ? DecideInNone(place, now, mark) : Keep(place, now, mark);
   }
   if (in_kept == Fit::kLoss && in_other != Fit::kNo && num_held_ > 0 && IsOtherKeptGoingOn()) return Join(place, now);
   int nearer = static_cast<int>(in_kept) - static_cast<int>(in_other);
   if (nearer == 0) nearer = Nearer(place, now);
-  if (nearer > 0) return TakeInKept(place, now);
-  if (nearer < 0) return TakeInOther(place, now, mark);
+  if (nearer > 0) return DecideInKept(place, now);
+  if (nearer < 0) return DecideInOther(place, now, mark);
   // Whose it is, nothing tells. Both are followed; that both still speak shows by the second message with this number.
   const Time other_received = other_->received;
   Follow(*kept_, place, now);
@@ -273,7 +273,7 @@ StreamGuard::Decision StreamGuard::Keep(const StreamPlace& place, Time now, std:
   return {};
 }
 
-StreamGuard::Decision StreamGuard::TakeInKept(const StreamPlace& place, Time now) {
+StreamGuard::Decision StreamGuard::DecideInKept(const StreamPlace& place, Time now) {
   Decision decision;
   decision.num_lost = Follow(*kept_, place, now);
   NoteTaken(place);
@@ -284,7 +284,7 @@ StreamGuard::Decision StreamGuard::TakeInKept(const StreamPlace& place, Time now
   return decision;
 }
 
-StreamGuard::Decision StreamGuard::TakeInOther(const StreamPlace& place, Time now, std::int64_t mark) {
+StreamGuard::Decision StreamGuard::DecideInOther(const StreamPlace& place, Time now, std::int64_t mark) {
   const auto num_lost = Follow(*other_, place, now);
   if (num_held_ == 0) {  // those before are refused already
     other_->first = place;
@@ -299,7 +299,7 @@ StreamGuard::Decision StreamGuard::TakeInOther(const StreamPlace& place, Time no
 }
 
 // A message that follows in neither stream.
-StreamGuard::Decision StreamGuard::TakeInNone(const StreamPlace& place, Time now, std::int64_t mark) {
+StreamGuard::Decision StreamGuard::DecideInNone(const StreamPlace& place, Time now, std::int64_t mark) {
   if (other_ && other_->num_steps > 1 && IsAlive(*other_, now)) {
     if (place.seq == other_->last.seq) other_->received = now;  // of two that nothing tells apart: both still speak
     NoteRefused(1, now, mark, now);

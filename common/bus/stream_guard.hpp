@@ -144,9 +144,9 @@ class StreamGuard {
   static std::int64_t Follow(Stream& stream, const StreamPlace& place, Time now);
   static Stream Begin(const StreamPlace& place, Time now, std::int64_t mark);
   Decision Keep(const StreamPlace& place, Time now, std::int64_t mark);
-  Decision TakeInKept(const StreamPlace& place, Time now);
-  Decision TakeInOther(const StreamPlace& place, Time now, std::int64_t mark);
-  Decision TakeInNone(const StreamPlace& place, Time now, std::int64_t mark);
+  Decision DecideInKept(const StreamPlace& place, Time now);
+  Decision DecideInOther(const StreamPlace& place, Time now, std::int64_t mark);
+  Decision DecideInNone(const StreamPlace& place, Time now, std::int64_t mark);
   void NoteRefused(std::int64_t number, Time now, std::int64_t mark, Time began);
   bool WasTaken(const StreamPlace& place) const;
   void NoteTaken(const StreamPlace& place);

@@ -111,7 +111,7 @@ struct OutputFile::Implementation final : public std::streambuf {
 
   ~Implementation() override {
     if (descriptor < 0) return;
-    if (!partial.empty() && !is_done) TakeAway();
+    if (!partial.empty() && !is_done) RemovePartial();
     close(descriptor);
   }
 
@@ -233,7 +233,7 @@ struct OutputFile::Implementation final : public std::streambuf {
     return "";
   }
 
-  void TakeAway() const {
+  void RemovePartial() const {
     if (!IsNameOf(partial, descriptor)) {
       Tell(file.string() + ": not written; " + partial.string() + " was taken away by somebody else");
     } else if (unlink(partial.c_str()) != 0) {

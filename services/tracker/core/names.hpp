@@ -47,24 +47,24 @@ class Names {
   /// By id of the track.
   std::vector<std::pair<std::int64_t, std::string>> All() const;
   std::int64_t num_over_limit() const { return num_over_limit_; }
-  /// Given to what became one with something that had a later name.
+  /// Names given to a track that became one with a track of a later name.
   std::int64_t num_merged() const { return num_merged_; }
   /// Now: names of structures that are told by a later name of another piece.
   std::int64_t num_beside() const;
 
  private:
-  struct Given {
+  struct GivenName {
     std::string name;
     std::int64_t order = 0;  // in which they were given
     Utime borne;             // last
     bool is_structure = false;
     std::int64_t thing = kUnnamed;  // that its track is of
   };
-  using Item = std::pair<const std::int64_t, Given>;
+  using Item = std::pair<const std::int64_t, GivenName>;
   const Item* FindOfStructure(std::int64_t thing) const;
   void PassOn(std::span<const Track> tracks, const Things& things);
 
-  std::map<std::int64_t, Given> names_;              // by track
+  std::map<std::int64_t, GivenName> names_;          // by track
   std::map<std::int64_t, std::int64_t> structures_;  // tracks that are a piece of one, now, and the thing
   std::int64_t num_given_ = 0;
   std::int64_t num_over_limit_ = 0;

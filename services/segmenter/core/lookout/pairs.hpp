@@ -130,7 +130,7 @@ class PairFinder {
     int last_step;
     int direction;  // 1 or -1
   };
-  struct Met {
+  struct Paired {
     int num = 0;
     int last_step = 0;  // that was looked at
   };
@@ -168,12 +168,12 @@ class PairFinder {
   void LookBehind(const Reaches& reaches, const Shown& front, std::span<const Shown> behind);
   bool IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int column) const;
   void LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches, const Shown& from);
-  Met MeetBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach, const Reach& narrower,
-                 int most);
-  int MeetIn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower);
-  bool MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower);
+  Paired PairBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach, const Reach& narrower,
+                    int most);
+  int PairInColumn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower);
+  bool PairOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower);
   Contact& At(std::int32_t one, std::int32_t other);
-  Contact& Meet(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point, float squared_gap_m2);
+  Contact& RecordContact(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point, float squared_gap_m2);
   void Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const;
 
   double lidar_above_water_m_;
