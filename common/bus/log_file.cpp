@@ -50,7 +50,7 @@ struct LogReader::Implementation {
   std::vector<std::uint8_t> block;
   std::int64_t block_offset = 0;
   std::string channel;             // of the event that was given last
-  std::vector<std::uint8_t> kept;  // its beginning, where what follows it was passed over
+  std::vector<std::uint8_t> kept;  // its beginning, where the rest was passed over
   std::function<void()> on_search;
 
   // @param least_bytes  to be read if any are
@@ -92,7 +92,7 @@ struct LogReader::Implementation {
     const std::size_t size = head_size + static_cast<std::size_t>(data_size);
     const Bytes head = View(start, head_size);
     if (head.size() < head_size) return std::nullopt;
-    channel.assign(head.begin() + kLogEventHeaderBytes, head.end());  // what stands behind the event may be another stretch
+    channel.assign(head.begin() + kLogEventHeaderBytes, head.end());  // the bytes behind the event may be another stretch
     const std::size_t given_size = std::min({num_wanted(channel), static_cast<std::size_t>(data_size), kMaxLogDataBytes});
     const bool is_jump = size - head_size - given_size >= kWorthAJumpBytes;
     const bool is_whole_given = given_size > 0 && !is_jump;

@@ -41,7 +41,7 @@ BoatFacts LoadBoat(const std::filesystem::path& folder);
 
 struct BoatRemark {
   std::string words;
-  std::string cure;  // what to look at; empty where nothing is doubtful
+  std::string cure;  // advice; empty where nothing is doubtful
   bool is_under_water = false;
 };
 

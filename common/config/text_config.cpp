@@ -54,7 +54,7 @@ constexpr std::size_t kMaxFaults = 100;
 struct GoneField {
   std::string_view message;
   std::string_view field;
-  std::string_view reason;  // and what to do
+  std::string_view reason;  // and the cure
 };
 constexpr std::array kGoneFields{
     GoneField{"lookout.config.Tracker", "map",
@@ -97,7 +97,7 @@ std::optional<double> NumberOf(const Message& message, const FieldDescriptor& fi
       return is_list ? reflection.GetRepeatedInt32(message, &field, index) : reflection.GetInt32(message, &field);
     case FieldDescriptor::CPPTYPE_INT64: {
       const auto value = is_list ? reflection.GetRepeatedInt64(message, &field, index) : reflection.GetInt64(message, &field);
-      return static_cast<double>(value);  // limits are round numbers: what rounds onto one is as good as it
+      return static_cast<double>(value);  // limits are round numbers: a value that rounds onto one is as good as it
     }
     default:
       return std::nullopt;

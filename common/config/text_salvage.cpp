@@ -47,7 +47,7 @@ std::vector<Piece> PiecesOf(const std::string& text) {
     if (text[i] == '\n') line_begins.push_back(i + 1);
   }
   google::protobuf::io::ArrayInputStream input(text.data(), static_cast<int>(text.size()));
-  FirstError unused;  // the statement that holds what the tokenizer refuses is parsed again
+  FirstError unused;  // the statement that the tokenizer refuses is parsed again
   Tokenizer tokenizer(&input, &unused);
   tokenizer.set_comment_style(Tokenizer::SH_COMMENT_STYLE);
   tokenizer.set_allow_f_after_float(true);

@@ -67,7 +67,7 @@ class ClockFit {
   std::chrono::microseconds last_late_{0};
   std::chrono::microseconds now_{0};
   std::optional<double> slope_;  // of host minus source over the source's time
-  int num_samples_ = 0;          // since the offset was found, at most what it takes to settle
+  int num_samples_ = 0;          // since the offset was found, at most as many as it takes to settle
   int num_early_ = 0;            // in a row that are impossibly early by far
   bool is_settled_ = false;
 };

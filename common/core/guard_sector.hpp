@@ -12,7 +12,7 @@ namespace lookout {
 struct GuardZoneParams {
   double range_m = 0.0;          // horizontal, from the vessel's origin; 0 = no alarm
   Sector bearing;                // of the sector, from the bow clockwise
-  bool takes_tentative = false;  // whether what is tentative, which may be spray, raises the alarm too
+  bool takes_tentative = false;  // whether tentative obstacles, which may be spray, raise the alarm too
 };
 
 /// Whether the whole zone lies within a box, seen from above. In the box around the own hull nothing can be seen that is not own boat.

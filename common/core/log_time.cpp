@@ -172,7 +172,7 @@ TimeInLog FindTime(std::string_view option, std::string_view text, const LogSpan
   } else {
     time = given->kind == GivenTime::Kind::kUtc ? Utime(given->value) : UtimeFromWire(ToUtimeUs(log.begin) + given->value.count());
   }
-  const bool goes_back = log.end < log.begin;  // the host's clock was set: who knows what lies outside
+  const bool goes_back = log.end < log.begin;  // the host's clock was set: nobody knows which times lie outside
   if (!time || (!goes_back && (*time < log.begin - kSlack || *time > log.end + kSlack))) {
     return {std::nullopt, Quoted(option, text) + ": lies outside of the log, which goes " + SpanText(log)};
   }

@@ -30,7 +30,7 @@ enum class FileKind {
   kMcap,
   kSqlite,
   kUtf16,  // text
-  kNmea,   // text with what begins as a sentence of NMEA 0183 does
+  kNmea,   // text with a line that begins as a sentence of NMEA 0183 does
   kText,
   kUnknown,
 };
@@ -52,7 +52,7 @@ enum class Wanted {
   kLog,         // an lcm-log
   kCapture,     // pcap or pcapng, also packed by gzip
   kTextLog,     // of NMEA 0183
-  kDetections,  // what lookout-import reads: JSON
+  kDetections,  // input of lookout-import: JSON
   kRecording,   // any of these, or a text log
 };
 

@@ -100,7 +100,7 @@ int RenameWithoutReplacing(const fs::path& from, const fs::path& to) {
 struct OutputFile::Implementation final : public std::streambuf {
   Implementation(fs::path name, OutputOptions some_options) : file(std::move(name)), options(std::move(some_options)), stream(this) {
     stream.imbue(std::locale::classic());
-    stream.exceptions(std::ios::badbit);  // what Write throws comes through
+    stream.exceptions(std::ios::badbit);  // exceptions of Write come through
     buffer.reserve(kBlockBytes);
     if (file.empty()) throw std::runtime_error("the name of the output is empty");
     if (!OpenDirectly()) OpenPartial();
@@ -200,7 +200,7 @@ struct OutputFile::Implementation final : public std::streambuf {
       return false;
     }
     try {
-      CheckPlace();  // again: from here on nobody else who asks for the lock puts a file there
+      CheckPlace();  // again: from here on no other program that asks for the lock puts a file there
     } catch (const std::runtime_error&) {
       unlink(partial.c_str());
       close(made);

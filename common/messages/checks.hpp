@@ -46,11 +46,12 @@ inline constexpr Fault kSegmentsSize = "segments_refused_size";      // larger t
 inline constexpr std::array kSegmentsFaults{kSegmentsTime,   kSegmentsParts, kSegmentsCount, kSegmentsId,
                                             kSegmentsNumber, kSegmentsCode,  kSegmentsSize};
 
-inline constexpr Fault kObstaclesTime = "obstacles_refused_time";      // does not exist, lies outside of its scan, or the scan is longer than 60 s
-inline constexpr Fault kObstaclesParts = "obstacles_refused_parts";    // part_index, num_parts (above 2000), seq
-inline constexpr Fault kObstaclesCount = "obstacles_refused_count";    // counts that do not agree; no corner
-inline constexpr Fault kObstaclesId = "obstacles_refused_id";          // ids that do not increase
-inline constexpr Fault kObstaclesNumber = "obstacles_refused_number";  // what the status says is known is not, or is no place, share or probability
+inline constexpr Fault kObstaclesTime = "obstacles_refused_time";    // does not exist, lies outside of its scan, or the scan is longer than 60 s
+inline constexpr Fault kObstaclesParts = "obstacles_refused_parts";  // part_index, num_parts (above 2000), seq
+inline constexpr Fault kObstaclesCount = "obstacles_refused_count";  // counts that do not agree; no corner
+inline constexpr Fault kObstaclesId = "obstacles_refused_id";        // ids that do not increase
+inline constexpr Fault kObstaclesNumber =
+    "obstacles_refused_number";  // a value that the status says is known is not, or is no place, share or probability
 inline constexpr Fault kObstaclesCovariance = "obstacles_refused_covariance";  // not a covariance; one that is not known is none
 inline constexpr Fault kObstaclesCode = "obstacles_refused_code";              // a status, confidence, ground or kind that does not exist
 inline constexpr Fault kObstaclesSize = "obstacles_refused_size";              // larger than a message may be

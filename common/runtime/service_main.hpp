@@ -23,7 +23,7 @@ struct ServiceProgram {
   Hangup hangup = Hangup::kKeepConfig;
   std::function<Params(const std::filesystem::path& config_folder)> load = {};  // throws ConfigError
   std::function<void(Process&, const Params&)> run = {};                        // may set another OnHangup
-  std::function<std::string(const Params&)> remarks = {};                       // what --check prints besides the values
+  std::function<std::string(const Params&)> remarks = {};                       // words of --check besides the values
   // On SIGHUP: throws std::runtime_error where the sources of the next config cannot be opened beside the running ones.
   std::function<void(const Params& next, const Params& running)> try_sources = {};
 };

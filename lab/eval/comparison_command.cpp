@@ -267,7 +267,7 @@ int CompareMethods(const ComparisonOptions& options) {
   });
   if (!options.left_out.empty()) {
     methods.insert(methods.begin(), std::make_unique<LeaveOutMethod>(boat, LeaveOutEvidence(options.weights_folder, LeftOutOf(options)), scenes));
-    if (!options.captures.empty()) LeftOutOfCaptures(options, boat);  // what is missing stops the run before it begins
+    if (!options.captures.empty()) LeftOutOfCaptures(options, boat);  // a missing file stops the run before it begins
   }
 
   io::CatchStopSignals();

@@ -63,7 +63,7 @@ struct ServiceParts {
   OrderQueue& orders;
   std::function<Utime()> now;                                                          // host time
   std::function<void(Utime time, std::string_view channel, Bytes message)> keep = {};  // for the last minutes; none: they are not kept
-  std::function<void(HealthReport& report)> add_to_report = {};                        // what else is to be told
+  std::function<void(HealthReport& report)> add_to_report = {};                        // further parts of the report
 };
 
 /// It subscribes all channels that a page shows: not the raw ones, LIDAR_NMEA and SIM_TRUTH. A message that does not decode, or is of a second

@@ -39,7 +39,7 @@ class SignalKOutput : public Output {
   struct Raised {
     std::string word;
     Notice notice;
-    bool is_heard_loud = false;  // it came back with sound since it was told so last: then quiet is what a person did
+    bool is_heard_loud = false;  // it came back with sound since it was told so last: then a person silenced it
   };
   static constexpr std::size_t kMostRaised = 1000;
   std::map<RaisedKey, Raised> raised_;

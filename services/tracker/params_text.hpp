@@ -10,7 +10,7 @@ namespace lookout::tracker {
 
 struct ZoneRemark {
   std::string words;
-  std::string cure;  // what to look at; empty where nothing is doubtful
+  std::string cure;  // advice; empty where nothing is doubtful
 };
 
 /// Whether the beams of the lidar can look into all of the guard zone, as far as the config tells, and how near low things are seen. Settings of the

@@ -19,10 +19,11 @@ struct Sources {
   std::vector<std::filesystem::path> capture_files;  // in the order in which they are read
   double capture_speed = 1.0;                        // 0 = as fast as possible
   std::string bind_address;
-  std::string interface;                              // empty = any
-  std::string multicast_group;                        // empty = none
-  std::vector<std::string> allowed_source_addresses;  // empty = all; as inet_ntop writes them, to be compared as texts; what is no address stays
-  std::string bpf_filter;                             // empty = made of the ports
+  std::string interface;        // empty = any
+  std::string multicast_group;  // empty = none
+  std::vector<std::string>
+      allowed_source_addresses;  // empty = all; as inet_ntop writes them, to be compared as texts; a text that is no address stays
+  std::string bpf_filter;        // empty = made of the ports
   int receive_buffer_bytes = 0;
 };
 

@@ -19,8 +19,8 @@ enum class Grade { kOk, kWarning, kFault };
 struct Finding {
   Grade grade = Grade::kOk;
   std::string subject;  // one word
-  std::string text;     // what was found
-  std::string cure;     // what to do; empty where nothing is wrong
+  std::string text;     // the finding
+  std::string cure;     // advice; empty where nothing is wrong
 };
 
 using Findings = std::vector<Finding>;

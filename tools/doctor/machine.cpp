@@ -216,7 +216,7 @@ BuffersSeen ReadBuffers(const ConfigSeen& config) {
   buffers.by_default = granted();
   const int asked = static_cast<int>(buffers.asked);
   setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &asked, sizeof asked);
-  buffers.granted = granted() / 2;  // socket(7): the kernel doubles what is asked for, and tells that
+  buffers.granted = granted() / 2;  // socket(7): the kernel doubles the requested size, and tells that
   close(descriptor);
   return buffers;
 }

@@ -57,9 +57,9 @@ struct PortSeen {
 
 /// Receive buffers of UDP sockets, bytes.
 struct BuffersSeen {
-  std::int64_t granted = 0;     // to who asks for `asked`
+  std::int64_t granted = 0;     // to a socket that asks for `asked`
   std::int64_t asked = 0;       // by Lookout's processes
-  std::int64_t by_default = 0;  // to who asks for none
+  std::int64_t by_default = 0;  // to a socket that asks for none
 };
 
 /// One address of an interface of this computer; an interface without any has `address` empty.
@@ -84,7 +84,7 @@ struct LidarSeen {
   std::string complaint;  // of the process, or of the same code inside the doctor; empty = none
   // Datagrams to the data port by numeric source; kItself with source UDP alone.
   std::map<std::string, std::int64_t> num_by_sender;
-  std::int64_t num_packets = 0;  // data packets, and the times that who received them put on the first and the last
+  std::int64_t num_packets = 0;  // data packets, and the receiver's times of the first and the last
   Utime first{};
   Utime last{};
   Utime heard_last{};   // by this computer's clock, which may not be the one of `last`

@@ -56,7 +56,7 @@ class OwnLidar {
     }
     for (const int port : {params.data_port, params.position_port}) {
       auto options = vlp16::ToUdpOptions(params.sources, port);
-      options.allowed_source_addresses.clear();  // whoever sends is to be seen; who may is decided here
+      options.allowed_source_addresses.clear();  // every sender is to be seen; which is allowed is decided here
       sources_.push_back(std::make_unique<io::UdpReceiver>(options));
     }
   }

@@ -220,7 +220,7 @@ int Export(const Request& request, const Output& row, std::ostream& errors) {
     const auto of_this = tallies.front().num_of_other_type > 0 ? " of this version's type" : "";
     throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name) + of_this + (when.empty() ? "" : " " + when));
   }
-  if (request.format != "csv" && text.empty()) {  // the end of what was written before is not empty
+  if (request.format != "csv" && text.empty()) {  // the end of the written text is not empty
     throw std::runtime_error(request.scan ? "the input holds no scan " + std::to_string(*request.scan) : std::string(row.when_empty));
   }
   output.Write(text);

@@ -98,7 +98,7 @@ void MapMerge::JoinSeen(std::vector<MapThing> seen) {
   by_latitude.reserve(things_.size());
   for (const auto& [number, thing] : things_) by_latitude.emplace_back(thing.latitude_deg, number);
   std::ranges::sort(by_latitude);
-  std::vector<std::tuple<double, std::int64_t, std::size_t>> pairs;  // distance, number, index of what was seen
+  std::vector<std::tuple<double, std::int64_t, std::size_t>> pairs;  // distance, number, index of the seen thing
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const double reach_deg = kMostPairM / kLeastDegM;
     for (auto near = std::ranges::lower_bound(by_latitude, std::pair(seen[i].latitude_deg - reach_deg, std::int64_t{0}));

@@ -65,7 +65,7 @@ class MapReader {
   std::optional<tracker::Sight> sight_;  // of the boat in RUN_INFO
   std::deque<Waiting> waiting_;
   std::deque<std::pair<tracker::ScanKey, tracker::Sweep>> sweeps_;  // of the first scans of seconds
-  tracker::ScanInput looked_;                                       // what sight_ looks at
+  tracker::ScanInput looked_;                                       // the scan of sight_
   std::optional<std::int64_t> tracks_second_;
   std::optional<std::int64_t> beams_second_;
   std::map<tracker::ScanKey, tracker::ScanKey> newest_;  // of each process: the last scan

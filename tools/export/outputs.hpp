@@ -29,7 +29,7 @@ struct Output {
   /// @throws config::ConfigError
   std::unique_ptr<Sink> (*make)(const Request& request);
   bool is_by_time = false;                                  // reads its logs in the order of their times, not as they are given
-  std::string_view when_empty = "the input holds no scan";  // what the log lacks where nothing comes of it
+  std::string_view when_empty = "the input holds no scan";  // the missing part of the log where the output is empty
 };
 
 /// All rows: of a table those of its formats, csv first.

@@ -355,7 +355,7 @@ Picture PictureOfReturns(const ScanMessages& scan, const MergeReasons& reasons, 
     picture.bow_rad = up_rad;
     picture.own_vessel_box_m = boat->own_vessel_box_m;
   }
-  std::map<std::pair<int, std::string_view>, Dots> dots;  // by label, then reason: what is in no segment lies below
+  std::map<std::pair<int, std::string_view>, Dots> dots;  // by label, then reason: returns in no segment lie below
   int num_returns = 0;
   bool has_labels = false;
   for (const auto& [part_index, part] : scan.scans) {

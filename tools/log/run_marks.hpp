@@ -30,7 +30,7 @@ class RunMarks {
   void Add(Utime time, std::string_view channel, Bytes bytes) {
     auto* const stream = std::ranges::find(streams_, channel, &Stream::channel);
     if (stream == streams_.end() || bytes.size() < kMarkOffset + 8) return;
-    if (bus::ReadU64BigEndian(bytes, 0) != stream->fingerprint) return;  // what is no such message nobody consumed
+    if (bus::ReadU64BigEndian(bytes, 0) != stream->fingerprint) return;  // nobody consumed a message of another type
     const auto mark = static_cast<std::int32_t>(bus::ReadU64BigEndian(bytes, kMarkOffset) >> 32);
     const auto holds = [&](std::int32_t searched) { return stream->is_bit ? (mark & searched) != 0 : mark == searched; };
     const bool is_start = holds(stream->start_mark);

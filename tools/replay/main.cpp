@@ -236,7 +236,7 @@ void Replay(const Options& options) {
   const double digest_s = lookout::ToSeconds(chain.digest_time());
   const double elapsed_s = lookout::ToSeconds(std::chrono::steady_clock::now() - start) - digest_s;
 
-  const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a scan; else scans are told by what they give
+  const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a scan; else the results count the scans
   const auto num_scans = CountOf(chain, has_clock ? lookout::bus::kLidarClock : lookout::bus::kSegments);
   PrintSummary(summary, chain, num_scans);
   PrintInterleavings(summary.interleavings);
@@ -261,7 +261,7 @@ void Replay(const Options& options) {
   for (const auto& line : lookout::replay::Lacks(SeenIn(options, inspection, chain, watched))) spdlog::warn("{}", line);
   std::FILE* const out = output.IsStandardOutput() ? stderr : stdout;  // a log that goes there is not mixed with lines
   output.Commit();
-  PrintDigests(chain, out);  // last: the log is there, whoever reads these
+  PrintDigests(chain, out);  // last: the log is there, whether or not anybody reads these
 }
 
 // Memory that is returned to the system is requested again at the next scan: page faults took a tenth of the time.

@@ -43,8 +43,8 @@ struct Plan {
   std::vector<std::string> services = ServiceNames();  // that run, in the order of the data
   ServiceRows table = ReplayedServices();              // out of which they were chosen
   std::vector<std::string> read = {};                  // channels that come out of the logs, in the order of the channel table
-  std::vector<std::string> absent = {};                // of these, what the logs do not hold
-  std::optional<tracker::Script> script = {};          // what the tracker did live, where the logs tell
+  std::vector<std::string> absent = {};                // of these, channels that the logs do not hold
+  std::optional<tracker::Script> script = {};          // actions of the live tracker, where the logs tell
 
   bool Runs(std::string_view service) const;
   /// Whether a service that runs publishes the channel.

@@ -13,7 +13,7 @@ namespace lookout::eval {
 
 struct ReadmeFigure {
   std::string name;                   // of its blocks
-  std::vector<std::string> captions;  // lines of text: what is counted, over what, when and how it was made
+  std::vector<std::string> captions;  // lines of text: the count, over which scans, when and how it was made
   Table table;
 };
 

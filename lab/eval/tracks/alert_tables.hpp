@@ -19,7 +19,7 @@ struct AlertRow {
 struct AlertWorld {
   std::string name;
   std::vector<AlertRow> scenes;  // one row of each (AddUpAlerts)
-  std::string over_all;          // what the row over all of them is called
+  std::string over_all;          // name of the row over all of them
 };
 
 /// One row of each scene: runs of one are added. Order: as they come first.

@@ -24,7 +24,7 @@ class AlertTruth {
 
  private:
   struct Known {
-    AlertThing thing;  // of what stands whole, of all else without outline and motion
+    AlertThing thing;  // of a standing thing complete, of all others without outline and motion
     bool is_moving = false;
   };
   MovingHull MotionOf(int id, std::int64_t utime_us) const;

@@ -14,7 +14,7 @@ namespace lookout::eval {
 
 struct TrackOptions : RunOptions {
   std::filesystem::path captures;   // empty = none
-  std::filesystem::path lost_file;  // what costs MOTA, a row of CSV for each scan and thing or track; empty = none
+  std::filesystem::path lost_file;  // causes of a lower MOTA, a row of CSV for each scan and thing or track; empty = none
 };
 
 /// Trackers beside the boat's own in each table. A further tracker is a further line here.

@@ -36,7 +36,7 @@ struct TrackEvent {
   // none.
   std::int64_t nearest = 0;
   double nearest_gap_m = 0.0;
-  double speed_mps = 0.0;  // as the track says; of what is said to stand, the true one
+  double speed_mps = 0.0;  // as the track says; of a thing that is said to stand, the true one
 };
 
 /// Probabilities, and whether it came so, in ten bins.

@@ -12,7 +12,7 @@ namespace lookout::eval {
 struct TrackWorld {
   std::string name;
   std::vector<TrackRow> scenes;  // one row of each scene and tracker (AddUp)
-  std::string over_all;          // what the row over all of them is called
+  std::string over_all;          // name of the row over all of them
 };
 
 /// A row for each target and world: the value of `tracker`, whether it reaches the target, the scene that is farthest from it, and the value of

@@ -24,7 +24,7 @@ constexpr int kNoPartner = -1;
 struct Candidate {
   int estimate = kNoPartner;
   std::size_t first = 0;        // scan
-  std::vector<double> gain_m2;  // from that scan on: what the pair saves against a miss and a false one
+  std::vector<double> gain_m2;  // from that scan on: gain of the pair over a miss and a false one
 
   double GainAt(std::size_t scan) const { return scan >= first && scan - first < gain_m2.size() ? gain_m2[scan - first] : 0.0; }
 };

@@ -14,13 +14,13 @@ namespace lookout::navigator {
 
 /// When something was measured.
 struct MeasurementTime {
-  Utime time;     // on the time scale of POSE: UTC of the sentence where that is usable, else arrival less what is known of its delay
+  Utime time;     // on the time scale of POSE: UTC of the sentence where that is usable, else arrival less the known part of its delay
   Utime arrival;  // at this computer, by its clock
   bool is_from_sentence = false;
   bool is_date_refused = false;  // its date is wrong, its time of day is right
   // In UTC: the sentence's, also where the computer's clock is far from it; else from the arrival by the fit of the clocks.
   Utime utc = time;
-  bool has_sentence_utc = false;  // utc is what the sentence says
+  bool has_sentence_utc = false;  // utc is the sentence's
   int num_leaps = 0;              // leap seconds through which its source went: the same UTC comes twice
 };
 

@@ -46,7 +46,7 @@ class Slots {
   struct Slot {
     bool has_begun = false;
     std::int64_t begun_group = 0;  // the one of which a part was sent last
-    Parts begun;                   // what is left of it
+    Parts begun;                   // its unsent rest
     std::int64_t next_group = 0;
     Parts next;
 

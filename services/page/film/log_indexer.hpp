@@ -65,7 +65,7 @@ class LogIndexer {
   std::vector<std::uint8_t> kept_;  // bytes of an event while the next is looked at
   std::string kept_channel_;
   std::optional<Utime> last_;
-  std::chrono::microseconds shift_{0};  // of what follows a clock that was set back
+  std::chrono::microseconds shift_{0};  // of entries behind a clock that was set back
   std::array<bus::SequenceWatch, bus::kChannels.size()> sequences_;
   std::array<std::int64_t, bus::kChannels.size()> num_lost_in_second_{};
   std::array<bool, bus::kChannels.size()> is_refusal_told_{};

@@ -52,7 +52,7 @@ struct FilmEvent {
 };
 
 inline constexpr std::size_t kMaxFilmTextBytes = 240;
-inline constexpr std::size_t kMaxFilmEvents = 50'000;  // of one log; what comes later is not told
+inline constexpr std::size_t kMaxFilmEvents = 50'000;  // of one log; later ones are not told
 inline constexpr std::size_t kMaxFilmProcesses = 64;
 
 struct LogPart {

@@ -207,7 +207,7 @@ struct LookBack::Implementation {
       status.shortage.clear();
     }
     const std::scoped_lock lock(mutex);
-    recording = Recording();  // the recorder's log holds what the spool held
+    recording = Recording();  // the recorder's log holds the messages of the spool
   }
 
   // Entries that were read stay; the spool goes on.
@@ -247,7 +247,7 @@ struct LookBack::Implementation {
         if (log > to_follow.back()) to_follow.push_back(log);
       }
       if (to_follow.size() == 1) return;
-      ReadOn(*followed, followed_number);  // what was written before the next was begun
+      ReadOn(*followed, followed_number);  // entries written before the next was begun
       to_follow.erase(to_follow.begin());
       followed.reset();
     }
@@ -333,7 +333,7 @@ struct LookBack::Implementation {
   mutable std::mutex mutex;
   Recording recording;
 
-  mutable std::mutex status_mutex;  // of what stands here; never held while a disk is used
+  mutable std::mutex status_mutex;  // guards these members; never held while a disk is used
   LookBackStatus status;
   std::string turn_fault;
   std::string sources_text = "[]";
@@ -355,7 +355,7 @@ struct LookBack::Implementation {
   int num_periods = 0;
   int retry_periods = 0;
   bool is_stop_told = false;
-  std::int64_t room_bytes = options.max_bytes;  // of the spool: what the disk's reserve leaves to it
+  std::int64_t room_bytes = options.max_bytes;  // of the spool: the room that the disk's reserve leaves to it
   std::string room_text;
   std::optional<Utime> end_told;
 

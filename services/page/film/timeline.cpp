@@ -13,7 +13,7 @@ using std::chrono::seconds;
 // Messages of one scan come within this time; a later message with its time is of another run.
 constexpr seconds kScanSpread(5);
 constexpr std::size_t kOpenScans = 16;
-constexpr seconds kRecent(5);           // HEALTH and what else has no scan
+constexpr seconds kRecent(5);           // HEALTH and other channels without a scan
 constexpr std::size_t kMaxBack = 2000;  // messages of ALERTS that are looked through
 
 bool Is(ChannelIndex channel, const bus::Channel& of) { return bus::kChannels[channel].name == of.name; }

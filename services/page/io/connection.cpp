@@ -69,7 +69,7 @@ void Connection::Start() { AwaitRequest(kFirstPatience); }
 
 void Connection::LetGo() {
   is_let_go_ = true;
-  stream_.close();  // what waits for it hears of it
+  stream_.close();  // handlers that wait for it hear of it
 }
 
 void Connection::Enter(Stage stage) {

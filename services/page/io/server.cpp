@@ -224,7 +224,7 @@ struct Server::Implementation {
   asio::steady_timer tick{hub.context};
   SteadyTime end_since{};
   std::atomic<int> port = 0;
-  mutable std::mutex faults_mutex;  // of what stands here
+  mutable std::mutex faults_mutex;  // guards these members
   std::string listen_fault;
   std::string crowd_text;
   std::optional<SteadyTime> crowded_at;

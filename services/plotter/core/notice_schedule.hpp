@@ -34,7 +34,7 @@ class NoticeSchedule {
   struct Due {
     Notice notice;
     int revision = 1;        // 1 to 99: goes up with each change
-    bool is_repeat = false;  // of what was told before: it can wait
+    bool is_repeat = false;  // of a notice that was told before: it can wait
   };
 
   /// @param notices  all that are there now; where the output has no words for sound, without it

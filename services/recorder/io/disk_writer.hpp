@@ -29,7 +29,7 @@ struct Disk {
 Disk RealDisk();
 
 struct DiskLimits {
-  std::int64_t queue_bytes = 0;    // what may wait for the disk; an event beyond it is lost
+  std::int64_t queue_bytes = 0;    // events may wait for the disk up to this; further ones are lost
   std::int64_t reserve_bytes = 0;  // of the disk, is not written into
 };
 
@@ -112,7 +112,7 @@ class DiskWriter {
   const DiskLimits limits_;
   const Disk disk_;
 
-  mutable std::mutex mutex_;  // of what stands here
+  mutable std::mutex mutex_;  // guards these members
   std::condition_variable wake_;
   std::condition_variable done_;
   std::deque<Block> queue_;

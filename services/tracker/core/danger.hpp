@@ -28,7 +28,7 @@ constexpr bool IsOfPlaces(std::int64_t thing) { return thing == kLandTrack || th
 /// By one cause. Of one thing there may be one of each cause.
 struct Danger {
   AlertCause cause = AlertCause::kGuardZone;
-  std::int64_t thing = kLandTrack;          // the track, or what it belongs to
+  std::int64_t thing = kLandTrack;          // the track, or the thing that it belongs to
   std::int64_t nearest_track = kLandTrack;  // of the thing; 0: none, or land
   TrackKind kind = TrackKind::kUnknown;     // of it
   double probability = 0.0;                 // of a guard zone 1: it is in it
@@ -43,7 +43,7 @@ struct Danger {
   Utime first = {};           // seen
   Utime seen = {};            // last
   Eigen::Vector2d place_map_m = Eigen::Vector2d::Constant(kNan);
-  std::vector<DangerPlace> places = {};  // of land and of what has no track, at least one: so far an acknowledgement goes
+  std::vector<DangerPlace> places = {};  // of land and of things without a track, at least one: so far an acknowledgement goes
 };
 
 /// Of two dangers of one cause and one thing the one that is told: the likely one, then the graver, then the sooner, then the nearer.

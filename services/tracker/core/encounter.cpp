@@ -364,7 +364,7 @@ double CourseOf(const Eigen::Vector2d& direction) { return Atan2(direction.x(), 
 
 ClosestApproach ClosestApproachOf(const Moving& own, const Moving& other, const RelativeCovariance& covariance, const EncounterParams& params) {
   if (own.turn_rate_radps != 0.0 || other.turn_rate_radps != 0.0) return ApproachInTurns(own, other, covariance, params);
-  const auto difference = DifferenceOf(own.hull_m, other.hull_m);  // by what the other must be moved for both to touch
+  const auto difference = DifferenceOf(own.hull_m, other.hull_m);  // displacements of the other hull for both to touch
   const Eigen::Vector2d velocity_mps = other.velocity_mps - own.velocity_mps;
   const double distance_m = SignedDistance(difference, Eigen::Vector2d::Zero());
   ClosestApproach approach;

@@ -22,7 +22,7 @@ using RelativeCovariance = Eigen::Matrix4d;
 
 struct EncounterParams {
   double limit_m = 0.0;       // hull to hull
-  double look_ahead_s = 0.0;  // what comes later does not count
+  double look_ahead_s = 0.0;  // later approaches do not count
 };
 
 // Numbers are those of the wire.

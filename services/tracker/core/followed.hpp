@@ -24,7 +24,7 @@ inline double Logit(double probability) {
 inline double Sigmoid(double log_odds) { return 1.0 / (1.0 + Exp(-log_odds)); }
 
 inline constexpr double kBirthLogOdds = -2.0;
-inline constexpr double kClearLogOdds = 2.0;       // of what is beyond doubt at first sight
+inline constexpr double kClearLogOdds = 2.0;       // of a thing that is beyond doubt at first sight
 inline constexpr double kFirstStepM2 = 0.3 * 0.3;  // before there was one
 inline constexpr int kMostHits = 30;               // that count in a mean, the last ones most
 inline constexpr int kMostLooks = 60;              // that speak for it
@@ -34,8 +34,8 @@ struct Followed {
   std::int64_t number = 0;  // given when it is confirmed; 0: not yet
   Utime first;
   Utime seen;
-  Utime seen_alone;                        // when it was last seen by itself, and not inside of what another is seen by
-  std::optional<Body> body;                // from when it is likely; before that, what was seen last stands for it
+  Utime seen_alone;                        // when it was last seen by itself, and not inside of another track's sighting
+  std::optional<Body> body;                // from when it is likely; before that, its last sighting stands for it
   std::vector<Eigen::Vector2d> outline_m;  // predicted
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
   double radius_m = 0.0;
@@ -44,9 +44,9 @@ struct Followed {
   double log_odds = kBirthLogOdds;                                   // that something is there that lasts from scan to scan
   double mean_thing = 0.0;                                           // of the log odds of its segments that they are no clutter
   double mean_step_m2 = kFirstStepM2;                                // squared, from where it was expected to where it was seen
-  Eigen::Vector2d seen_m = Eigen::Vector2d::Zero();                  // middle of what was seen last
+  Eigen::Vector2d seen_m = Eigen::Vector2d::Zero();                  // middle of its last sighting
   double seen_radius_m = 0.0;                                        // of it
-  double first_radius_m = 0.0;                                       // of what was seen first
+  double first_radius_m = 0.0;                                       // of its first sighting
   int num_hits = 0;
   int num_alone = 0;       // of these away from all known things and from the own hull, to which parts, gear and crew stand still
   double beams_met = 1.0;  // of those that could have: with one of two as what is known before

@@ -163,7 +163,7 @@ class Gatherer {
   std::deque<Waiting> waiting_;
   std::optional<ScanKey> newest_;  // of OBSTACLES
   bool has_begun_ = false;
-  bool is_anew_ = false;  // what has not been told to a scan yet
+  bool is_anew_ = false;  // not told to a scan yet
   std::optional<Utime> host_time_;
   std::optional<Utime> pose_arrival_;  // host time of the last, or from when on it is known
   std::optional<Utime> last_timeout_;

@@ -23,7 +23,7 @@ struct Settings {
 };
 
 struct Order {
-  Utime time;  // host time of who sent it
+  Utime time;  // host time of the sender
   std::int64_t seq = 0;
   std::string source;
   OrderKind kind = OrderKind::kSilence;

@@ -40,7 +40,7 @@ struct Sweep {
 
 struct ScanInput {
   Utime time;      // first firing
-  Utime end_time;  // last shot: what states are propagated to
+  Utime end_time;  // last shot: states are propagated to it
   std::int64_t seq = 0;
   std::int32_t flags = 0;
   Datum datum;

@@ -9,7 +9,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::int32_t kNothing = -1;
-constexpr std::int32_t kMostNumber = 65'535;  // labels have 16 bits: what has a greater one has no returns
+constexpr std::int32_t kMostNumber = 65'535;  // labels have 16 bits: a segment with a greater number has no returns
 
 struct PieceReturns {
   std::int32_t number = 0;

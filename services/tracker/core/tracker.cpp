@@ -18,7 +18,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr double kMostGapOfTimeS = 10.0;  // between scans; beyond, everything begins anew
-constexpr double kMostJumpM = 10.0;       // of the own position, beyond what its speed explains
+constexpr double kMostJumpM = 10.0;       // of the own position, beyond the way that its speed explains
 constexpr double kTypicalRangeM = 20.0;   // at which an error of heading counts as one of position
 constexpr double kLeastSettlingM = 0.1;
 constexpr double kWaterlineRangeM = 150.0;

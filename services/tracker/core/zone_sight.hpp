@@ -45,7 +45,7 @@ struct ZoneSightParams {
   Sector field_of_view = {};                       // azimuths of the lidar
   Eigen::AlignedBox3d own_vessel_box_m{};          // vessel frame; empty = none
   Eigen::AlignedBox2d own_hull_m{};                // vessel frame, inside of the box
-  std::vector<float> expected_elevation_rad = {};  // of the lidar that the config names, from the lowest up: for what is told before a scan came
+  std::vector<float> expected_elevation_rad = {};  // of the lidar that the config names, from the lowest up: for words before a scan came
 };
 
 /// The zone in cells: bearings of a degree, ranges of a twentieth of its range. A cell can be looked into where a beam passes through a post that

@@ -64,7 +64,7 @@ class SensorClock {
   /// The time at which something came. Late deliveries, and a host's clock that is set, change its host time only.
   struct Instant {
     Utime host_time;
-    std::optional<SensorTime> time;  // nullopt before the first data packet, and of what came before a restart
+    std::optional<SensorTime> time;  // nullopt before the first data packet, and of arrivals before a restart
   };
   struct Rmc {
     Instant came;  // when it told a new time

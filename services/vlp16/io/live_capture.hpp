@@ -81,7 +81,7 @@ class LiveCapture final : public io::Source {
   std::string fault_;
   std::string read_fault_;  // why reading ended; until Poll() reports it
   std::string filter_;
-  Drops past_drops_;  // of what has been closed
+  Drops past_drops_;  // of closed captures
   FrameCounts frames_;
   std::int64_t num_source_refused_ = 0;
   std::int64_t num_outages_ = 0;

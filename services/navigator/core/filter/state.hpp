@@ -21,7 +21,7 @@ enum Part : int {
   kRotation = 6,       // about east, north, up, rad
   kRate = 9,           // rad/s, vessel frame: bias of the gyroscopes, or without them the rate itself
   kAcceleration = 12,  // m/s2: bias of the accelerometers in the vessel frame; without strapdown navigation, acceleration in the level frame
-  kFixError = 15,      // what the receiver's positions have in common for a while: east, north, up, m
+  kFixError = 15,      // common error of the receiver's positions for a while: east, north, up, m
   kHeadingError = 18,  // the same of the compass, rad, clockwise
   kWaterLevel = 19,    // up of the origin while the boat lies still on calm water, m
   kNumErrors = 20,

@@ -29,7 +29,7 @@ std::array<Evidence, kNumSums> DefaultEvidences();
 struct MergeParams {
   Reach reach;
   double log_odds = 0.0;        // 0: more likely one than two
-  bool reaches_behind = false;  // what something nearer hides of a gap does not count for the reach
+  bool reaches_behind = false;  // the part of a gap that something nearer hides does not count for the reach
 };
 
 /// Defaults are those of config/schema/segmenter.proto, which says where they come from.

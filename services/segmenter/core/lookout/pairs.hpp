@@ -19,7 +19,7 @@ namespace lookout::segmenter {
 enum class PairFeature : std::uint8_t {
   kRange,           // m, where the two come closest
   kGap,             // m, seen from above
-  kFreeGap,         // m, of the gap what nothing nearer hides
+  kFreeGap,         // m, the part of the gap that nothing nearer hides
   kGapColumns,      // columns between them there; 0 where they share columns
   kRadialGap,       // m, how much farther the back is there
   kRadialGapRings,  // the same over the distance at which the next ring would meet calm water

@@ -186,7 +186,7 @@ void PieceTable::MergeFacts(std::span<const std::int32_t> group_of_piece, std::i
 }
 
 void PieceTable::MergeOutlines(std::span<const std::int32_t> group_of_piece) {
-  std::size_t num = 0;  // what has been merged stands before what has not
+  std::size_t num = 0;  // merged entries stand before the others
   std::size_t i = 0;
   for (std::size_t column = 0; column + 1 < begin_of_column_.size(); ++column) {
     const std::size_t first_of_column = num;

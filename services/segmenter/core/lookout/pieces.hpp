@@ -98,7 +98,7 @@ class PieceTable {
   // Empty columns between two that follow each other in a piece.
   struct Gap {
     std::int32_t num = -1;
-    float nearer_end_m = 0.0F;  // ranges of what is nearest in the two
+    float nearer_end_m = 0.0F;  // ranges of the nearest returns of the two
     float farther_end_m = 0.0F;
     std::int32_t after = 0;  // the column that ends it
   };
