@@ -21,11 +21,11 @@ constexpr double kKeptSideRad = DegToRad(60.0);
 constexpr std::size_t kZone = static_cast<std::size_t>(AlertCause::kGuardZone) - 1;
 constexpr std::size_t kApproach = static_cast<std::size_t>(AlertCause::kClosestApproach) - 1;
 constexpr std::size_t kWatch = static_cast<std::size_t>(AlertCause::kWatch) - 1;
-// What has no track is shown for so long after it was seen last.
+// An alert without a track is shown for so long after its thing was seen last.
 constexpr std::chrono::milliseconds kShownFor{500};
 constexpr double kPassedS = 1.0;
 
-// What is not known comes last.
+// Unknown values come last.
 double LastIfUnknown(double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; }
 
 bool IsToldBefore(const Alert& a, const Alert& b) {
@@ -175,7 +175,7 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
   UpdatePlaces(entry, time, is_whole, evidence);
 }
 
-// Whether its track is still there; of what is not seen the place as it lies from the boat now.
+// Whether its track is still there; of an alert without one the place as it lies from the boat now.
 void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidence& evidence, const Surroundings& around) {
   const bool is_told = std::ranges::any_of(evidence, [](const Danger* danger) { return danger != nullptr; });
   if (!entry.HasAlert() || is_told) {
@@ -202,7 +202,7 @@ void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidenc
   if (!is_lost && alert.sight == AlertSight::kLost) alert.sight = AlertSight::kSeen;
 }
 
-// What holds, in the words of this scan.
+// An alert that holds, in the words of this scan.
 void Alerts::Tell(Entry& entry, const Evidence& evidence, Utime time) const {
   auto& alert = *entry.alert;
   alert.is_in_zone = entry.causes[kZone].is_on;
@@ -340,7 +340,7 @@ void Alerts::Advance(Entry& entry, std::int64_t thing, Utime time) {
       alert.is_in_zone = alert.comes_near = false;
       entry.was_acknowledged = alert.state == AlertState::kAcknowledged;
     }
-    // What is named by now has an alert of its own.
+    // A thing that has a name by now has an alert of its own.
     const bool is_named = thing == kUnnamed && HasNamedInZone([](const Alert& other) { return other.Holds(); });
     const bool wants_note = alert.state != AlertState::kAcknowledged && alert.level == AlertLevel::kWarning && !is_named;
     alert.SetState(wants_note ? AlertState::kRectified : AlertState::kCleared, time);
@@ -381,8 +381,8 @@ bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
   return false;
 }
 
-// What was shown a second ago, followed since: what came up between is not acknowledged. What the tracker itself acknowledges for a person (see
-// KeptAcknowledgements) is on the side of the boat where it was told.
+// Places shown a second ago, followed since: a place that came up between is not acknowledged. An acknowledgement by the tracker itself for a person
+// (see KeptAcknowledgements) is on the side of the boat where it was told.
 void Alerts::TellPlaces(Entry& entry, std::int64_t thing, const Acknowledgement& acknowledgement) {
   if (!entry.told) entry.told.emplace(thing == kUnnamed ? ToldPlaces::Kind::kThings : ToldPlaces::Kind::kLand);
   entry.untold = {};

@@ -12,10 +12,10 @@ namespace {
 
 // How far off a lost thing may be by now, for each second.
 constexpr double kMovedOnMps = 0.5;
-// How long before the end of the old track, or before the alert of what had no name, the new one may have begun.
+// How long before the end of the old track, or before the alert of a thing without a name, the new one may have begun.
 constexpr std::chrono::seconds kBeganBefore{2};
 
-// What comes up again so near, and so soon, is what was lost.
+// A thing that comes up again so near, and so soon, is the lost one.
 constexpr double kSurelySameM = 5.0;
 constexpr double kSurelySameS = 10.0;
 
@@ -34,8 +34,8 @@ double Alerts::Entry::DistanceTo(const Eigen::Vector2d& place_map_m, Utime time)
   return std::min(stood.norm(), went.norm());
 }
 
-// The alert of what was lost, or had no name, goes on under the name under which it is found: at the same place. What was found before the old track
-// was given up has an alert of its own: then the two become one.
+// The alert of a lost thing, or of one without a name, goes on under the name of the thing that is found at the same place. Where that was found
+// before the old track was given up it has an alert of its own: then the two become one.
 void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
   if (IsOfPlaces(thing) || danger.place_map_m.hasNaN()) return;
   const auto own = entries_.find(thing);
@@ -46,7 +46,7 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
   for (auto item = entries_.begin(); item != entries_.end(); ++item) {
     const auto& [other, entry] = *item;
     if (item == own || !entry.alert || entry.alert->place_map_m.hasNaN()) continue;
-    // What was lost; not what is over and goes on where it is clear.
+    // A lost thing; not an alert that is over and goes on where it is clear.
     const bool is_nameless = other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
     const bool is_lost_now = HasTrack(other) && entry.lost && entry.HasAlert() && entry.alert->Holds();
     const bool is_free = has_own ? is_lost_now : HasTrack(other) ? entry.WasLost() : is_nameless;

@@ -1,4 +1,4 @@
-// What is there.
+// Existence of tracks.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::size_t kLooksKept = 15;
-constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have been seen
+constexpr double kDetectionUnknown = 0.5;  // where nobody knows which water was looked through
 constexpr double kMostDetection = 0.95;
 constexpr double kGreatestExistence = 6.0;
 constexpr double kLeastExistence = -6.0;
@@ -43,7 +43,7 @@ void Step::Look() {
     const double share = track.beams_met / track.beams_open;
     // Of so many beams that each would come back with this share; not all of them by themselves.
     double none = 1.0;
-    // What ended in it was something there, if not by itself.
+    // Beams that ended in the outline met something there, if not the track's own segment.
     const double num_empty = look.num_open - look.num_met;
     for (int i = 0; i < std::min(20, static_cast<int>(std::lround(num_empty))); ++i) none *= 1.0 - share;
     track.is_met = look.num_met > 0.5 * look.num_open;
@@ -62,7 +62,7 @@ void Step::Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen
   track.log_odds += Log(1.0 - detection + detection * density / clutter);
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
   const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
-  // Of what is known for sure, a way behind something else is no unsteadiness.
+  // The step of a confirmed track since its last sighting is spread over the scans between: a hidden track is not unsteady.
   const double scans = track.is_confirmed ? std::max(1.0, ToSeconds(scan_.end_time - track.seen) / std::max(dt_s_, 0.01)) : 1.0;
   track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm() / scans);
   if (!track.is_confirmed && IsAlone(track, i)) ++track.num_alone;
@@ -78,8 +78,8 @@ void Step::Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen
 
 void Step::Miss(Followed& track) {
   if (track.detection <= 0.0) return;                                      // it could not have been seen
-  if (!is_sight_known_ && known_.had_sight && track.is_confirmed) return;  // what was looked through is lost: nobody knows
-  // What hides a known thing for a scan (a wave, a roll of the boat) hides it for a while.
+  if (!is_sight_known_ && known_.had_sight && track.is_confirmed) return;  // the beams are lost: nobody knows
+  // A wave or a roll of the boat that hides a known thing for a scan hides it for a while.
   const bool is_moving = track.body && track.body->IsMoving(0.5);
   const double known = is_moving ? 0.0 : std::min(1.0, track.num_hits / kMissHits);
   const double weight = 1.0 - known * (1.0 - std::min(1.0, dt_s_ / kMissS));
@@ -140,7 +140,7 @@ void Step::Begin() {
   for (auto& track : known_.tracks) {
     if (track.is_confirmed && !track.is_ended) confirmed.push_back(&track);
   }
-  // Where there are too many, what is sure comes first.
+  // Where there are too many, sure ones come first.
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < sightings_.size(); ++i) {
     if (sightings_[i].use == Sighting::Use::kFree) order.push_back(i);

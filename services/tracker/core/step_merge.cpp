@@ -8,7 +8,7 @@ namespace lookout::tracker {
 
 namespace {
 
-constexpr double kNearM = 2.0;  // m, between the outlines of what may be one
+constexpr double kNearM = 2.0;  // m, between the outlines of two tracks that may be one
 constexpr double kNeverS = 0.0;
 constexpr double kFoundS = 0.3;
 constexpr double kMissedS = 0.15;  // more than once
@@ -55,7 +55,7 @@ bool Step::IsLikePart(const Followed& larger, const Followed& lesser, double sha
   const auto around = RectangleAround(larger.outline_m);
   const double area = AreaOf(lesser.outline_m);
   const bool is_piece = area < kPieceShare * AreaOf(larger.outline_m) && RectangleAround(lesser.outline_m).length_m < kPieceM;
-  // Within the outline of what may be a dock with berths, only what touches it.
+  // Within the outline of a possible dock with berths, only tracks that touch it.
   if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m) || around.length_m > kLongestWholeM)
     return is_piece && Touch(larger, lesser);
   if (shared_m2 > 0.0 && shared_m2 >= kWithinShare * area) return true;
@@ -148,7 +148,7 @@ void Step::Join(Followed& one, Followed& other) {
   const std::int64_t one_before = one.PublicId();
   const std::int64_t other_before = other.PublicId();
   const bool is_part = one.is_seen_now && other.is_seen_now;
-  // What is confirmed is not replaced by what is not.
+  // A confirmed track is not replaced by an unconfirmed one.
   const bool is_larger = AreaOf(other.outline_m) > AreaOf(one.outline_m);
   const bool is_part_better = IsMoving(one) == IsMoving(other) ? is_larger : IsMoving(other);
   const bool is_other_better = is_part ? is_part_better : other.seen_alone > one.seen_alone;
@@ -180,7 +180,7 @@ void Step::Join(Followed& one, Followed& other) {
   other.is_ended = true;
 }
 
-// Two that look like one for some time are one. What speaks against it in between takes as long away.
+// Two tracks merge after their evidence for being one object has lasted `OneForS()`. Each scan with evidence against it subtracts its own duration.
 void Step::Merge() {
   std::map<Ids, double> still_s;
   for (auto one = known_.tracks.begin(); one != known_.tracks.end(); ++one) {
