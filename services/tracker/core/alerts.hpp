@@ -120,7 +120,7 @@ class Alerts {
   /// Longer than a small boat stays behind another or behind a pile.
   static constexpr double kHiddenS = 10.0;
   static constexpr double kSameS = 10.0;
-  /// A thing that is found again: its outline begins elsewhere, and it has moved on.
+  /// How far off a thing is found again: its outline begins elsewhere, and it has moved on.
   static constexpr double kSamePlaceM = 3.0;
 
   explicit Alerts(const AlertParams& params) : params_(params) {}
@@ -180,7 +180,7 @@ class Alerts {
     bool is_over = false;           // its end was told
     bool was_acknowledged = false;  // when it ended
     std::optional<Lost> lost;
-    // Of its track, when it was known last.
+    // Of its track, when that was known last.
     bool was_likely = true;
     Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
     Utime placed;  // when its place was told last

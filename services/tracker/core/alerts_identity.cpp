@@ -1,4 +1,4 @@
-// Which thing an alert is of: what becomes one, is found again, or loses its map.
+// The thing of an alert: when things become one, are found again, or lose their map.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +27,7 @@ DangerPlace PlaceOf(const Alert& alert) { return {alert.distance_m, alert.bearin
 
 bool Alerts::Entry::WasLost() const { return lost || (is_over && (alert->end == AlertEnd::kHidden || alert->end == AlertEnd::kGone)); }
 
-// To where it was last, or would be by now. Precondition: it has an alert with a place.
+// Distance to the last place of the thing, or to where it would be by now. Precondition: it has an alert with a place.
 double Alerts::Entry::DistanceTo(const Eigen::Vector2d& place_map_m, Utime time) const {
   const Eigen::Vector2d stood = alert->place_map_m - place_map_m;
   const Eigen::Vector2d went = stood + ToSeconds(time - placed) * velocity_mps;
@@ -50,7 +50,7 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
     const bool is_nameless = other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
     const bool is_lost_now = HasTrack(other) && entry.lost && entry.HasAlert() && entry.alert->Holds();
     const bool is_free = has_own ? is_lost_now : HasTrack(other) ? entry.WasLost() : is_nameless;
-    // Something else that comes by there was seen before.
+    // Another thing that comes by was seen before.
     const Utime since = HasTrack(other) ? entry.alert->seen : entry.alert->raised;
     if (!is_free || danger.first < since - kBeganBefore) continue;
     // Beyond what it may have moved otherwise.
@@ -65,7 +65,7 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
   auto moved = entries_.extract(best);
   entries_.erase(thing);
   auto& entry = moved.mapped();
-  // So far off, or so late, it may be another boat: nobody has taken note of that.
+  // So far off, or so late, the thing may be another boat, which nobody has acknowledged.
   const bool is_sure = entry.DistanceTo(danger.place_map_m, time) <= kSurelySameM && ToSeconds(time - entry.alert->seen) <= kSurelySameS;
   if (!is_sure) {
     entry.was_acknowledged = false;

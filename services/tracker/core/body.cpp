@@ -65,7 +65,7 @@ constexpr double kJitterGain = 0.1;
 constexpr double kMotionMemoryS = 3.0;
 constexpr double kMovingPriorLogOdds = -2.0;
 constexpr double kGreatestLogOdds = 12.0;
-// Motion must stand out by itself, and goes on while it does half as much.
+// Motion must stand out by itself, and goes on while the evidence is half as much.
 constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
 constexpr double kSpeedSdsOn = 1.5;
@@ -80,7 +80,7 @@ constexpr double kLoosenedS = 1.0;
 constexpr double kOtherTrackMps = 0.3;
 
 constexpr std::size_t kMostParts = 3;  // beside the one that is seen
-// Where less than all is seen, it is a part: by so many deviations, and by a share of the size.
+// A measurement that is shorter than the known outline is a part: by so many deviations, and by a share of the size.
 constexpr double kPartSds = 2.0;
 constexpr double kPartShare = 0.15;
 
@@ -128,7 +128,7 @@ Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const S
   return measured;
 }
 
-// Whether less is seen than is known of this part.
+// Whether the measurement is shorter than this part.
 Body::Measured Body::MeasuredBy(Measured measured, const Reaches& known) const {
   measured.short_m = 0.0;
   for (std::size_t i = 0; i < kDirections / 2; ++i) {
@@ -178,7 +178,7 @@ Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const
   const auto first = FirstOutline(Measure(seen_m, sides, range_m), seen_m);
   standing_ = first_m_ = first.middle_m;
   sides_ = first.sides;
-  // The position is where the sides are counted from: it is known, the sides are not.
+  // The position is the origin of the sides: it is known, the sides are not.
   standing_m2_ = Eigen::Matrix2d::Identity() * kLeastJitterM2 + NoiseOf(noise_m2, range_m);
   moving_ << first.middle_m, Eigen::Vector2d::Zero(), 0.0;
   moving_covariance_.setZero();
@@ -262,7 +262,7 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Reaches& known, const 
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int num_edges = 0;
   if (measured.short_m > 0.0) {
-    // A part is somewhere in it, and for the while it is seen there.
+    // A part lies somewhere in the outline, and for now where it is seen.
     constexpr double kTimes = 2.0;
     const double weight = 1.0 / (kTimes * 0.25 * measured.short_m * measured.short_m);
     information = weight * Eigen::Matrix2d::Identity();
@@ -338,7 +338,7 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   last_measured_ = {measured_m, last_measured_[0]};
   num_measured_ = std::min(num_measured_ + 1, 2);
 
-  // An error that stays for a while counts once for that while: as noise of each scan it is as much greater.
+  // An error that lasts for a while counts once for that while: as noise of each scan it is as much greater.
   const Eigen::Vector2d across(-measured.sight.y(), measured.sight.x());
   const double outline_m = outline_sd_m();
   const double heading_m = kHeadingSdRad * range_m;
@@ -383,7 +383,7 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   standing_ += gain_standing * off_standing;
   standing_m2_ = (Eigen::Matrix2d::Identity() - gain_standing) * standing_m2_;
 
-  // One that stays to one side of where it is expected manoeuvres.
+  // A track that stays to one side of its predicted place manoeuvres.
   const double gain_mean = std::min(1.0, dt_s / kManoeuvreS);
   mean_off_m_ += gain_mean * (off_moving - mean_off_m_);
   const double off = mean_off_m_.dot(spread_moving.inverse() * mean_off_m_) / gain_mean;
@@ -401,7 +401,7 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   const Eigen::Vector2d velocity = velocity_mps();
   const double speed = velocity.norm();
   const double speed_sd = speed > 0.0 ? std::sqrt(velocity.dot(velocity_covariance() * velocity)) / speed : 0.0;
-  // Where it jumps the way it goes, the velocity is less sure for a while, and it moves all the same.
+  // Where the outline jumps the way that the track goes, its velocity is less sure for a while, and it moves all the same.
   const bool is_loosened = stands_out_ && goes_on_ && since_jump_s_ < kLoosenedS;
   stands_out_ = speed > kLeastSpeedMps && (is_loosened || speed > (stands_out_ ? kSpeedSdsOn : kSpeedSds) * speed_sd);
   moved_s_ = stands_out_ && prefers_moving_ ? moved_s_ + dt_s : 0.0;
@@ -454,7 +454,7 @@ void Body::MoveAs(const Body& before) {
 }
 
 void Body::AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
-  // Where it is at the end of the scan.
+  // The place at the end of the scan.
   auto now_m = seen_m;
   auto now_sides = sides;
   if (prefers_moving_) {

@@ -49,15 +49,15 @@ class Body {
   };
   Shift ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const;
 
-  /// @param grows  false where the seen outline may hold something else too: then it moves nothing but the position
+  /// @param grows  false where the seen outline may hold another thing too: then it moves nothing but the position
   void Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows);
 
-  /// All of it, at the predicted position.
+  /// The whole outline, at the predicted position.
   std::vector<Eigen::Vector2d> Outline() const;
   double SeenShare() const;
   /// The frame fixed to the thing, on the map: it moves and turns with it, also where the middle of its known outline does not.
   Eigen::Isometry2d Frame() const;
-  /// By how much that has moved since it was seen first.
+  /// Motion of that frame since the thing was seen first.
   double moved_m() const { return (Frame().translation() - first_m_).norm(); }
 
   /// All positions may have moved together by so much: the own position became better known.
@@ -74,7 +74,7 @@ class Body {
   /// @param has_jumped  it was not where it should be: the velocity is less sure
   void AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped);
 
-  /// Of the hypothesis that holds: moving where its probability is above the threshold.
+  /// State of the hypothesis that holds: moving where its probability is above the threshold.
   bool IsMoving(double threshold) const { return moving_probability_ > threshold; }
   double moving_probability() const { return moving_probability_; }
   Eigen::Vector2d center_m() const;  // middle of the outline
@@ -101,7 +101,7 @@ class Body {
   Measured Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const;
   Measured MeasuredBy(Measured measured, const Reaches& known) const;
   Shift ShiftOf(const Measured& measured, const Reaches& known, const Eigen::Matrix2d& noise_m2, double range_m) const;
-  // Which of the others is seen; nullopt: the one that was seen last.
+  // The other part that is seen; nullopt: the one that was seen last.
   std::optional<std::size_t> PartOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const;
   Reaches WholeSides() const;
   void ForgetParts(double dt_s);

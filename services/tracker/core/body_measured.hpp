@@ -17,7 +17,7 @@ struct Body::Measured {
   // A smaller part is seen than is known, from end to end, by so much; 0: all of it is.
   double short_m = 0.0;
 
-  // Whether it says where a side lies. A part lies in the outline: it says so much only where it reaches beyond.
+  // Whether the measurement says where a side lies. A part lies in the outline: it says so only where it reaches beyond.
   bool Tells(std::size_t i, double beyond_m) const { return short_m > 0.0 ? beyond_m > 0.0 : kind[i] == Kind::kEdge; }
 };
 

@@ -31,7 +31,7 @@ Support Body::SupportFrom(const std::vector<Eigen::Vector2d>& corners_m) const {
   return SupportOf(turned_back);
 }
 
-// The position to the middle of the outline: what turns does so about it.
+// From the position to the middle of the outline: a thing turns about its middle.
 void Body::Center() {
   const auto directions = SideDirections();
   const Eigen::Vector2d middle = middle_m();

@@ -129,7 +129,7 @@ class KnownThings {
       return least_m;
     }
   };
-  // nullptr: it belongs to none.
+  // nullptr: the obstacle belongs to no known thing.
   const Known* Find(const NearestPoint& point) const {
     const auto [sine, cosine] = SinCosOf(point.bearing_rad);
     const Eigen::Vector2d place_m(point.range_m * cosine, -point.range_m * sine);
@@ -178,7 +178,7 @@ class ShoreBearings {
   static constexpr double kBinRad = kTwoPi / kBins;
   static_assert(kBinRad <= 0.5 * ToldPlaces::kBesideRad);
 
-  // In steps that pass over no bin.
+  // In steps small enough to miss no bin.
   void AddEdge(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
     const double length_m = (to_m - from_m).norm();
     if (length_m == 0.0) return;

@@ -95,7 +95,7 @@ struct Followed {
     mean_thing += gain * (thing_log_odds - mean_thing);
     if (num_hits > 1) mean_step_m2 += (num_hits == 2 ? 1.0 : gain) * (step_m * step_m - mean_step_m2);
   }
-  // As others know it: a number from 1 up, or one of -2 and below until it is confirmed.
+  // The published id: a number from 1 up, or one of -2 and below until the track is confirmed.
   std::int64_t PublicId() const {
     constexpr std::int64_t kMostAtATime = 900'000;
     return number > 0 ? number : -2 - id % kMostAtATime;

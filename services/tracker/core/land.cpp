@@ -138,7 +138,7 @@ std::vector<Eigen::Vector2d> LandMemory::Waterline(const Eigen::Vector2d& near_m
 
 void LandMemory::Forget(const Eigen::Vector2d& own_m) {
   if (tiles_.size() <= kMostTiles) return;
-  // A quarter at once, so that it is rare.
+  // A quarter at once, so that this is rare.
   std::vector<std::pair<double, Cell>> by_distance;
   for (const auto& [tile, evidence] : tiles_) {
     by_distance.emplace_back((Eigen::Vector2d(tile.first + 0.5, tile.second + 0.5) * kTileCells * kCellM - own_m).squaredNorm(), tile);

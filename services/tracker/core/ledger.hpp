@@ -28,7 +28,7 @@ class Ledger {
     std::int32_t frame = 0;                     // index of the frames
     std::span<const Eigen::Vector2d> places_m;  // its returns on the map, at least one
   };
-  /// Where places are remembered.
+  /// A frame in which places are remembered.
   struct Frame {
     std::int64_t id = 0;                                            // 0: the earth; each other thing that moves has its own, not used again
     Eigen::Isometry2d T_frame_map = Eigen::Isometry2d::Identity();  // now

@@ -40,9 +40,9 @@ class Names {
   /// One scan, at its end: forgets names of ended tracks.
   void Update(Utime time, std::span<const Track> tracks, std::span<const Alert> alerts);
 
-  /// That was given to it; "": none.
+  /// The name given to the track; "": none.
   std::string Of(std::int64_t track_id) const;
-  /// Of an alert: of its nearest track, else of the structure that it is of, else, where the track is not seen any more, of the thing.
+  /// The name of an alert: of its nearest track, else of the structure of that track, else, where the track is not seen any more, of the thing.
   std::string Of(const Alert& alert) const;
   /// By id of the track.
   std::vector<std::pair<std::int64_t, std::string>> All() const;

@@ -12,10 +12,10 @@
 
 namespace lookout::tracker {
 
-/// From scan to scan the nearest places are the same thing. Drops and strays are here now and there now; what stays is something.
+/// From scan to scan the nearest places are the same thing. Drops and strays change their places; a thing stays.
 class Newcomers {
  public:
-  /// It goes by at most 10 m/s, and its outline changes by less than a metre.
+  /// A thing goes by at most 10 m/s, and its outline changes by less than a metre.
   static constexpr double kFollowedM = 1.5;
   /// A boat in waves loses a low thing for some scans.
   static constexpr std::chrono::milliseconds kKeptFor{400};

@@ -25,10 +25,10 @@ class Sight {
   /// @return false where the scan says nothing: no beams, or no poses
   bool Begin(const ScanInput& scan);
 
-  /// Of a thing that stands in the water, from the water up to `top_m`, with this outline on the map.
+  /// Look at a thing that stands in the water, from the water up to `top_m`, with this outline on the map.
   Look At(std::span<const Eigen::Vector2d> outline_m, double top_m) const;
 
-  /// Whether something nearer stands before what would be seen next to the ends of a seen outline.
+  /// Whether something nearer stands before the places next to the ends of a seen outline.
   Sides SidesOf(std::span<const Eigen::Vector2d> outline_m, double top_m) const;
 
   /// Whether a square on the map, from its lower left corner, is within reach of the beams.

@@ -52,7 +52,7 @@ std::vector<PieceReturns> PiecesOf(const ScanInput& scan, const Sight& sight) {
   return pieces;
 }
 
-// A segment by itself, of which no return is known.
+// A segment by itself, without known returns.
 void AddSegment(const Seen& segment, Sightings& sightings) {
   SetAt(sightings.of_segment, segment.segment_id, static_cast<std::int32_t>(sightings.all.size()));
   sightings.all.push_back({.seen = segment, .places_m = segment.waterline_m.empty() ? segment.outline_m : segment.waterline_m});

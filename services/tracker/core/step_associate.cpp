@@ -38,7 +38,7 @@ double Step::CostOf(const Followed& track, std::size_t i) {
   return 0.1 * std::min(shift.off, 30.0) + 0.1 * std::min(shift.misfit, 20.0) + (1.0 - overlap) + 0.1 * std::abs(Log(area_seen / area_track)) + young;
 }
 
-// Computed once for a segment, where it is asked for.
+// Computed once for a segment, on demand.
 const Sides& Step::SidesOf(std::size_t i) {
   auto& sighting = sightings_[i];
   if (!sighting.sides) {

@@ -41,7 +41,7 @@ void Step::Look() {
     }
     const auto look = known_.sight.At(track.outline_m, track.top_m);
     const double share = track.beams_met / track.beams_open;
-    // Of so many beams that each would come back with this share; not all of them by themselves.
+    // Probability that none of the beams comes back, each with this share; at most 20 count, as they are not independent.
     double none = 1.0;
     // Beams that ended in the outline met something there, if not the track's own segment.
     const double num_empty = look.num_open - look.num_met;
@@ -51,7 +51,7 @@ void Step::Look() {
   }
 }
 
-// That something is there: it is seen as near to where it was expected as its place is known, against clutter there.
+// Evidence of existence: the thing is seen near its predicted place, by the deviation of that place, against clutter there.
 void Step::Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen::Vector2d& expected_m) {
   const auto& sighting = sightings_[i];
   const double sd = std::max(track.body ? 0.3 : 0.5, std::sqrt(0.5 * seen.covariance_relative_m2.trace()));
@@ -121,8 +121,8 @@ bool Step::IsAlone(const Followed& track, std::size_t i) const {
   });
 }
 
-// How the water was watched in which it came up; again where it turns out to be higher. Nothing comes up beside where a known thing was lost: that is
-// the thing.
+// Whether the water was watched in which the track came up; asked again where it turns out to be higher. Nothing comes up beside the place where a
+// known thing was lost: that is the thing.
 void Step::AskWatched(Followed& track) const {
   constexpr double kHigherM = 0.05;
   constexpr double kBesideLostM = 2.0;

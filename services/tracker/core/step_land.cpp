@@ -100,7 +100,7 @@ bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
     if (!sightings_[k].seen.is_land ||
         (sightings_[k].middle_m - sightings_[i].middle_m).norm() > sightings_[k].radius_m + sightings_[i].radius_m + kBesideShoreM)
       continue;
-    // Not the hull of a bay: its shore.
+    // The shore, not the hull, of a bay.
     if (std::ranges::any_of(sightings_[k].places_m, [&](const Eigen::Vector2d& place_m) {
           return (place_m - sightings_[i].middle_m).norm() < sightings_[i].radius_m + kBesideShoreM;
         }))

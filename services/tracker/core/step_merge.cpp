@@ -94,7 +94,7 @@ bool Step::IsSuspect(const Followed& track) const {
   });
 }
 
-// Whether the first, known and lost although it should have been seen, is the second, which came up beside where it was seen last.
+// Whether the first track, known and lost although it should have been seen, is the second, which came up beside its last place.
 bool Step::IsFoundAgain(const Followed& lost, const Followed& found) const {
   constexpr double kLostProbability = 0.3;
   constexpr double kBeforeS = 1.5;
@@ -115,7 +115,7 @@ bool Step::IsFoundAgain(const Followed& lost, const Followed& found) const {
   return times < kMostTimesLarger && times > 1.0 / kMostTimesLarger;
 }
 
-// For how long two must look like one until they are taken for one; 0: they do not, in this scan.
+// For how long two tracks must look like one until they are taken for one; 0: they do not, in this scan.
 double Step::OneForS(const Followed& one, const Followed& other) const {
   constexpr double kShortestS = 0.5;
   constexpr double kLongestS = 10.0;
@@ -132,7 +132,7 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   const Followed& lesser = area >= other_area ? other : one;
   const auto both = Intersection(one.outline_m, other.outline_m);
   const double shared_m2 = both.empty() ? 0.0 : std::max(1e-9, AreaOf(both));
-  // Longer where both are well known, as a boat at a dock with which it is segmented for a while.
+  // Longer where both are well known, as a boat and the dock with which it is segmented for a while.
   if (!both.empty() && shared_m2 >= 0.5 * std::min(area, other_area) && !(one.is_seen_now && other.is_seen_now)) {
     const int num_hits = one.is_confirmed == other.is_confirmed ? std::min(one.num_hits, other.num_hits) : (one.is_confirmed ? one : other).num_hits;
     return std::clamp(kPerHitS * num_hits, kShortestS, kLongestS);
@@ -143,7 +143,7 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   return is_moving_together && GapOf(one.outline_m, other.outline_m).distance_m < kNearM ? kPartS : kNeverS;
 }
 
-// The second becomes one with the first, by the older name.
+// The second track becomes one with the first, by the older name.
 void Step::Join(Followed& one, Followed& other) {
   const std::int64_t one_before = one.PublicId();
   const std::int64_t other_before = other.PublicId();

@@ -22,7 +22,8 @@ void Step::LeaveOutdated() {
   }
 }
 
-// The own position became much better known: tracks move to where most of them are seen now. Where too few agree, each may be anywhere near.
+// The own position became much better known: tracks move by the shift that brings most of them to segments of now. Where too few agree, each may be
+// anywhere near.
 void Step::Settle() {
   constexpr double kSds = 3.0;
   constexpr double kSameM = 0.5;

@@ -33,9 +33,9 @@ class Things {
 
   /// The thing that a track belongs to: land, the first track of its structure, or it alone.
   std::int64_t ThingOf(std::int64_t track_id) const;
-  /// Whether it is of more than one track.
+  /// Whether the thing has more than one track.
   bool IsGroup(std::int64_t thing) const;
-  /// In the last Update: things that became part of others, or are called otherwise since the track left that named them (from, to).
+  /// In the last Update: things that became part of others, or have another name since the track left that named them (from, to).
   const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
 
  private:

@@ -89,7 +89,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   return memory.picture;
 }
 
-// Counter of the reason for which nothing that is known holds any more; nullptr: there is none.
+// Counter of the reason why the tracks are forgotten; nullptr: there is none.
 std::int64_t* Tracker::Memory::WhyAnew(const ScanInput& scan) {
   if (!time) return nullptr;
   const double since_s = ToSeconds(scan.end_time - *time);

@@ -152,7 +152,7 @@ void VoteGrid::KeepMajority() {
   }
 }
 
-// How likely a return of the one and a return of the other are of one segment, from -1 to 1.
+// How likely a return of one piece and a return of the other are of one segment, from -1 to 1.
 float VoteGrid::VoteOf(const Held& one, const Held& other) const {
   const auto ones = EntriesOf(one);
   const auto others = EntriesOf(other);
