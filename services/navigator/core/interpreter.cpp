@@ -189,8 +189,7 @@ Reading Interpreter::ReadUnderstood(const Item& item, Source& source, const Sent
   }
 }
 
-// Of a sentence without a time; nullopt: it waited in a queue for an unknown time. The first behind a timed one of its input was as late as
-// that.
+// Time of a sentence without one; nullopt: it waited in a queue for an unknown time. The first behind a timed one of its input was as late as that.
 std::optional<MeasurementTime> Interpreter::WhenArrived(const Item& item, Source& source, SentenceType type) {
   if (source.is_in_time) return clock_.OfArrival(source.clock, item.time, source.params.latency);
   auto& told_by = source.told_by[IndexOf(type)];
@@ -211,7 +210,7 @@ std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& sourc
     if (!source.epoch) return WhenArrived(item, source, sentence.type);
     const auto& epoch = source.epoch->fix.when;
     if (item.time - epoch.arrival <= UtcClock::kBurst) return epoch;
-    // It tells the place of an epoch that is over: at its arrival it would draw a boat that moves back.
+    // The sentence tells the place of an epoch that is over: at its arrival it would draw a boat that moves back.
     constexpr std::chrono::seconds kTimedFixes(2);
     if (epoch.has_sentence_utc && item.time - epoch.arrival <= kTimedFixes) return std::nullopt;
     return WhenArrived(item, source, sentence.type);

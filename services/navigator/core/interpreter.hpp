@@ -40,7 +40,7 @@ struct SourceParams {
   // Factors that turn the sensor's signs into ours: +1 where roll is positive starboard down, and pitch positive bow up.
   double roll_sign = 1.0;
   double pitch_sign = 1.0;
-  // Of the compass, where the sentence says none; positive east.
+  // Deviation and declination of the compass, where the sentence says none; positive east.
   std::optional<double> deviation_rad;
   std::optional<double> declination_rad;
 };
@@ -77,7 +77,7 @@ class Interpreter {
   /// Computer's clock less UTC; 0 while it counts as UTC.
   std::chrono::microseconds host_minus_utc() const { return clock_.host_minus_utc(); }
 
-  /// Of all sources, and then of each.
+  /// Counters of all sources together, and then of each.
   std::vector<Counter> counters() const;
 
  private:

@@ -51,7 +51,7 @@ class DatagramJoiner {
  public:
   /// So long the rest may be in coming: a gateway that sends full datagrams only keeps it until the next second of a receiver.
   static constexpr std::chrono::seconds kMaxWait{2};
-  /// Of so many senders at once something is held back.
+  /// Most senders of which text is held back at once.
   static constexpr std::size_t kMaxSenders = 64;
 
   /// @param sender  address and port: lines of two senders are never joined

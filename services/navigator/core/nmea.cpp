@@ -81,7 +81,7 @@ void ReadRmc(FieldReader& fields, Sentence& sentence) {
   if (status == 'A') sentence.quality = mode == '\0' ? FixQuality::kGnss : QualityOfMode(mode);
 }
 
-// Of a sentence that is too short: a number that does not stand with its unit says nothing.
+// A height of a sentence that is too short: a number that does not stand with its unit says nothing.
 double NumberWithUnitOrNan(const FieldReader& fields, std::size_t index, double min, double max) {
   FieldReader reader = fields;
   const double number = reader.NumberWithUnit(index, 'M', min, max);

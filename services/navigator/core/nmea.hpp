@@ -13,7 +13,7 @@
 
 namespace lookout::navigator {
 
-/// Of a fix, as in GGA (the numbers of gnss_fix_t).
+/// Quality of a fix, as in GGA (the numbers of gnss_fix_t).
 enum class FixQuality {
   kNone = 0,
   kGnss = 1,

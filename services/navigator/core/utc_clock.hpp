@@ -63,8 +63,8 @@ class UtcClock {
   /// Sentences of one source differ by less. A sentence that is late by more waited somewhere.
   static constexpr std::chrono::milliseconds kMinLateness{300};
 
-  /// Of a sentence without a time. Where one of the same source with a time came with it, kBurst before at most, and was late by `min_lateness` or
-  /// more, it was as late itself.
+  /// Lateness of a sentence without a time. Where one of the same source with a time came with it, kBurst before at most, and was late by
+  /// `min_lateness` or more, it was as late itself.
   MeasurementTime OfArrival(const SourceClock& source, Utime arrival, std::optional<std::chrono::microseconds> latency,
                             std::chrono::microseconds min_lateness = kMinLateness) const;
 

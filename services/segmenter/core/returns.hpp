@@ -76,7 +76,8 @@ class ReturnClassifier {
   const ClassifiedReturns& result() const { return result_; }
 
  private:
-  // Of one ring, so that the direction of a return takes no trigonometry: the azimuths of column and ring are added by the addition theorem.
+  // Sines and cosines of one ring, so that the direction of a return takes no trigonometry: the azimuths of column and ring are added by the addition
+  // theorem.
   struct RingGeometry {
     double cos_elevation_cos_offset;
     double cos_elevation_sin_offset;

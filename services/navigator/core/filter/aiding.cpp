@@ -44,7 +44,7 @@ constexpr double kHeaveSdM = 0.05;
 
 // A contradiction that lasts so long without changing is one of the state.
 constexpr auto kMaxRefusal = 3s;
-// Of positions while accelerometers are used, which are off by less than a metre by then: what jumps is rather the receiver.
+// Of positions while accelerometers are used, whose positions are off by less than a metre by then: a jump is rather the receiver's.
 constexpr auto kMaxStrapdownRefusal = 10s;
 constexpr double kEvenInSds = 5.0;
 // A difference that changes, while the refused measurements agree with each other, is of the state too: an IMU leads it away ever faster. A compass

@@ -25,7 +25,7 @@ bool BelievedPlace::IsWithinReach(const Run& run, Utime time, const GeodeticPlac
 void BelievedPlace::Add(Utime time, const GeodeticPlace& place, double sd_m, Run& run) {
   // Several sentences of an epoch are one fix.
   if (run.count == 0 || time != run.last) ++run.count;
-  // One that came late says nothing of where the boat is now.
+  // A late fix says nothing of where the boat is now.
   if (time < run.last && run.last - time <= kMostLate) return;
   run.last = time;
   run.place = place;

@@ -24,7 +24,7 @@ class BelievedPlace {
   static constexpr double kMostSpeedMps = 142.0;
   /// How far a boat gets in the time by which measurements are off that have none of their own.
   static constexpr double kSlackM = 50.0;
-  /// Of the deviations of both fixes, each per axis.
+  /// Multiple of the deviations of both fixes, each per axis.
   static constexpr double kSlackInSds = 7.0;
   static constexpr std::chrono::seconds kLeastHold{10};
   static constexpr std::chrono::seconds kMostHold{60};
@@ -39,7 +39,7 @@ class BelievedPlace {
 
   Verdict Judge(Utime time, const GeodeticPlace& place, double sd_m);
 
-  /// Of the fix that was held last, until there is a new place.
+  /// The fix that was held last, until there is a new place.
   struct Held {
     Utime time;
     double distance_m = 0.0;  // from the last that was believed

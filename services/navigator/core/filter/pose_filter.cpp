@@ -20,7 +20,7 @@ constexpr double kVerticalFactor = 2.0;
 constexpr std::chrono::microseconds kMoreHistory = 1s;
 // A sample of the IMU stands for no longer than this: five of a slow one (50 Hz).
 constexpr std::chrono::microseconds kMaxSampleAge = 100ms;
-// Of a receiver that says it is better: no deviation is less than a millimetre.
+// Least deviation of a position, whatever a receiver says: a millimetre.
 constexpr double kMinSdM = 0.001;
 
 // Sentences of one fix differ by how many digits they have, at most: receivers have 4 to 8 of a minute.
@@ -367,7 +367,7 @@ void PoseFilter::ProcessUntil(Utime time) {
     // Measurements of before the first item may still come.
     if (!base_) {
       base_ = filter::FreshState(events_.front().time - params_.max_latency - kMoreHistory, params_.unmeasured_tilt_sd_rad);
-      // Until the first fix says better.
+      // Valid until the first fix.
       if (params_.datum) filter::BeginLevel(*datum_, Eigen::Vector2d::Zero(), *base_);
     }
     Process(events_[num_processed_], num_processed_);

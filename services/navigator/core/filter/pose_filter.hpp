@@ -91,7 +91,7 @@ class PoseFilter {
   bool Insert(Utime time, const Measurement& measurement);
   void Touch(std::size_t index);
   void DropOld();
-  // That of the same epoch; nullptr when there is none.
+  // The fix of the same epoch; nullptr when there is none.
   filter::FixMeasurement* SameEpoch(const filter::FixMeasurement& fix, Utime time, std::size_t& index);
   // The sample for the interval that ends at `time`, by the events around it.
   const ImuSample* SampleFor(std::size_t next_index, Utime time) const;
@@ -102,7 +102,7 @@ class PoseFilter {
   FilterParams params_;
   std::optional<GeodeticPlace> datum_;
   std::optional<LocalFrame> map_;
-  // In force from the time of the first fix at a new place on.
+  // Valid from the time of the first fix at a new place on.
   struct NextDatum {
     Utime time;
     GeodeticPlace datum;

@@ -91,7 +91,7 @@ struct NominalState {
   Eigen::Vector3d fix_error_m = Eigen::Vector3d::Zero();
   double heading_error_rad = 0.0;
   double water_level_m = 0.0;
-  // Of the vessel, in its frame: follows from the IMU or from `rate`.
+  // Turn rate of the vessel, in its frame: follows from the IMU or from `rate`.
   Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
 
   Eigen::Matrix3d R_level_vessel() const { return q_level_vessel.toRotationMatrix(); }

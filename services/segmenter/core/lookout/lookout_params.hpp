@@ -43,7 +43,7 @@ struct LookoutParams {
   double land_probability = 0.7;
   double sure_probability = 0.5;
   std::array<Evidence, kNumSums> evidence = DefaultEvidences();
-  /// Of the lidar over the water when the boat floats at rest.
+  /// Height of the lidar over the water when the boat floats at rest.
   double lidar_above_water_m = 1.0;
 };
 

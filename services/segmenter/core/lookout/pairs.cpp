@@ -25,7 +25,7 @@ constexpr Reach kReachToFew{0.5, 0.08};
 // bound goes by whole columns, so no order decides. Fitted: with 48 instead of 160 canals lose pairs that they need.
 constexpr int kMostFewBeside = 8;
 constexpr int kMostLargerBeside = 160;
-// The same of the pieces behind it in one column.
+// Pieces behind it in one column.
 constexpr int kMostBehind = 32;
 // Columns at each end of a gap in which its beams are looked at.
 constexpr int kBeamColumns = 16;
@@ -277,7 +277,7 @@ PairFinder::Paired PairFinder::PairBeside(const Columns& columns, const Window& 
   return met;
 }
 
-// The same of one column, where a branch costs less than two passes through its pieces.
+// The same for one column, where a branch costs less than two passes through its pieces.
 int PairFinder::PairInColumn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower) {
   int num_met = 0;
   const std::size_t end = columns.begin_of_column[static_cast<std::size_t>(column) + 1];

@@ -72,7 +72,7 @@ class PieceMeasurer {
       far_m.push_back(entry.far_point.range_m);
       piece.push_back(entry.piece);
     }
-    // Of other pieces, in columns from first to before end, and about as far off.
+    // Pieces in columns from first to before end, and about as far off.
     int NumAbout(const OutlineEntry& entry, int first_column, int end_column) const;
   };
 

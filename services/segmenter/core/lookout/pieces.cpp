@@ -258,7 +258,7 @@ void PieceTable::WidenGap(Columns& columns, std::int32_t column, std::int32_t af
   if (std::tie(gap.num, gap.nearer_end_m, gap.farther_end_m) > std::tie(widest.num, widest.nearer_end_m, widest.farther_end_m)) widest = gap;
 }
 
-// In each line the circle without the widest gap between its returns there: of a piece all round, too, whatever column the scan begins with.
+// In each line the circle without the widest gap between its returns there: also of a piece all round, whatever column the scan begins with.
 void PieceTable::CountBeams(int num_columns) {
   spans_.assign(facts_.size(), {});
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {

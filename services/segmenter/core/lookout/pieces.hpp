@@ -51,7 +51,7 @@ struct PieceFacts {
   float min_height_m = 0.0F;  // over the lidar
   float max_height_m = 0.0F;
   Arc arc{};
-  // Of the line through it, seen from above.
+  // The line through it, seen from above.
   Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
   double length_m = 0.0;       // along it
@@ -79,7 +79,7 @@ class PieceTable {
 
   /// All outlines, by column from 0 on.
   std::span<const OutlineEntry> entries() const { return entries_; }
-  /// All that is seen in a column: one entry for each piece, the nearest first.
+  /// The entries of a column: one for each piece, the nearest first.
   std::span<const OutlineEntry> InColumn(std::int32_t column) const {
     const auto at = static_cast<std::size_t>(column);
     return std::span<const OutlineEntry>(entries_).subspan(begin_of_column_[at], begin_of_column_[at + 1] - begin_of_column_[at]);
