@@ -58,6 +58,8 @@ std::string Computer() {
 
 constexpr const char* kFamilies = "families";
 
+}  // namespace
+
 std::set<std::string> LeftOutOf(const ComparisonOptions& options) {
   std::set<std::string> families;
   for (const auto& known : sim::ListFamilies(options.config_folder)) families.insert(known.name);
@@ -70,6 +72,8 @@ std::set<std::string> LeftOutOf(const ComparisonOptions& options) {
   }
   return left_out;
 }
+
+namespace {
 
 // As tables call the captures.
 constexpr const char* kSecondWorld = "second world";

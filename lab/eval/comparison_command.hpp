@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct ComparisonOptions {
 /// Scenes, seeds and length that are asked for; "all" and "families" are spelt out, and where no first seed is asked for, it is the first of the
 /// range.
 RunPlan PlanOf(const ComparisonOptions& options, SeedUse use);
+
+/// Names of the families that are left out. @throws std::invalid_argument for one that is not known
+std::set<std::string> LeftOutOf(const ComparisonOptions& options);
 
 /// Prints tables to stdout and progress to stderr, and writes the files that are asked for. @return exit code
 /// Methods and tests of the paper take seeds of tables, sweeps those of tuning; the other range is refused (run_plan.hpp).

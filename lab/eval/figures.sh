@@ -12,8 +12,12 @@ evaluate --seeds 4 --seconds 0.6 \
   --sweep link_m=0.2:0.4:0.1 --sweep merge_log_odds=-2:2:1
 
 recordings=../shared/data
-build/release/bin/lookout-eval --config config/catabot --tracks --scenes all --seeds "${1:-20}" --captures "${LOOKOUT_CAPTURES:-$recordings/second_world}" \
-  --blocks "${readmes[@]}"
+tracks() {
+  build/release/bin/lookout-eval --config config/catabot --tracks --scenes all --captures "${LOOKOUT_CAPTURES:-$recordings/second_world}" \
+    "$recordings/second_world_long" --blocks "${readmes[@]}" "$@"
+}
+tracks --seeds "${1:-20}"
+tracks --seeds 4 --ablation
 if [ -d "$recordings/autoferry" ]; then
   build/release/bin/lookout-eval --autoferry "$recordings/autoferry" --blocks "${readmes[@]}"
 fi

@@ -33,6 +33,7 @@ struct Options {
   eval::ComparisonOptions comparison;
   std::string autoferry_folder;  // empty = none
   bool has_tracks = false;       // trackers on runs, in place of methods on scans
+  bool has_ablation = false;     // of these
   bool has_alerts = false;       // alerts on runs, in place of methods on scans
   std::vector<std::filesystem::path> captures;
   std::filesystem::path list_file;
@@ -76,9 +77,9 @@ Options ParseOptions(int argc, char** argv) {
   weights->needs(left_out);
   needs_config(app.add_option("--points", comparison.points, "scans out of files: .pcd, or .bin (KITTI) with a .label beside it"))
       ->check(CLI::ExistingFile);
-  needs_config(
-      app.add_option("--captures", options.captures,
-                     "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb (with --alerts several)"));
+  needs_config(app.add_option(
+      "--captures", options.captures,
+      "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb (with --tracks and --alerts several)"));
   auto* autoferry = app.add_option("--autoferry", options.autoferry_folder,
                                    "trackers on the Autoferry data set: folder of its files (--config: of the boat's tracker)")
                         ->check(CLI::ExistingDirectory);
@@ -120,7 +121,11 @@ Options ParseOptions(int argc, char** argv) {
       ->needs(alerts)
       ->capture_default_str();
   for (const char* other : {"--lost", "--tracks"}) alerts->excludes(app.get_option(other));
-  for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--pictures"}) {
+  auto* ablation = app.add_flag("--ablation", options.has_ablation, "with --tracks: the boat's tracker without each of its parts, in one table");
+  ablation->needs(tracks)->excludes(left_out);
+  alerts->excludes(left_out);
+  autoferry->excludes(left_out);
+  for (const char* other : {"--methods", "--sweep", "--test", "--points", "--html", "--pictures"}) {
     tracks->excludes(app.get_option(other));
     alerts->excludes(app.get_option(other));
     autoferry->excludes(app.get_option(other));
@@ -131,11 +136,11 @@ Options ParseOptions(int argc, char** argv) {
     app.parse(argc, argv);
     if (log.log_file.empty() && comparison.config_folder.empty() && options.autoferry_folder.empty())
       throw CLI::RequiredError("one of --in LOG, --config DIR, --autoferry DIR");
-    if (!options.has_alerts) {
-      if (options.captures.size() > 1) throw CLI::ValidationError("--captures", "several folders are for --alerts alone");
+    if (!options.has_alerts && !options.has_tracks) {
+      if (options.captures.size() > 1) throw CLI::ValidationError("--captures", "several folders are for --tracks and --alerts alone");
       if (!options.captures.empty()) comparison.captures = options.captures.front();
     }
-    if (!comparison.config_folder.empty() && !(options.has_alerts && !options.captures.empty())) {
+    if (!comparison.config_folder.empty() && !((options.has_alerts || options.has_tracks) && !options.captures.empty())) {
       const bool has_scans = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
       if (!has_scans && comparison.tests.empty() && options.autoferry_folder.empty())
         throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test, --autoferry");
@@ -171,7 +176,10 @@ int main(int argc, char** argv) try {
     return eval::EvaluateAlerts({RunsOf(comparison), options.berth_seconds.value_or(comparison.seconds), options.captures, options.num_jobs,
                                  options.kept_folder, options.list_file});
   }
-  if (options.has_tracks) return eval::EvaluateTracks({RunsOf(comparison), comparison.captures, comparison.lost_file});
+  if (options.has_tracks) {
+    return eval::EvaluateTracks(
+        {RunsOf(comparison), options.captures, comparison.lost_file, options.has_ablation, eval::LeftOutOf(comparison), comparison.weights_folder});
+  }
   return eval::CompareMethods(comparison);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';

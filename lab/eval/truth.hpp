@@ -54,6 +54,9 @@ struct TruthSpan {
   std::int64_t end_us = 0;
 };
 
+/// Returns of each object in a scan, from the time of its first shot to that of its last.
+using CountReturns = std::function<std::map<int, int>(const TruthSpan& scan)>;
+
 /// Outlines of the objects in one map frame.
 class Outlines {
  public:

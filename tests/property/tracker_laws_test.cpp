@@ -263,7 +263,7 @@ std::vector<std::vector<std::int32_t>> PartitionsOf(const std::vector<ScanInput>
   partitions.reserve(scans.size());
   for (const auto& scan : scans) {
     sight.Begin(scan);
-    partitions.push_back(SightingsOf(scan, sight, {}, ledger).of_piece);
+    partitions.push_back(SightingsOf(scan, sight, {}, &ledger).of_piece);
   }
   return partitions;
 }

@@ -1,9 +1,11 @@
 // The command line of lookout-eval: what it refuses, with which exit code, and that it leaves no table then.
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -77,6 +79,35 @@ TEST_F(EvalLine, TracksHaveTheirOwnTablesAndSeeds) {
   EXPECT_EQ(Run(with_methods).exit_code, 2);
 }
 
+TEST_F(EvalLine, TracksWithoutEachPartHaveOneTable) {
+  const auto result = Run({"--tracks", "--ablation", "--scenes", "sparse", "--seeds", "1", "--seconds", "1", "--csv", Path("csv")});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(std::distance(fs::directory_iterator(Path("csv")), fs::directory_iterator()), 1);
+  const auto table = ReadFile(Path("csv") + "/tracks_ablation.csv");
+  EXPECT_EQ(std::ranges::count(table, '\n'), 7) << table;  // its head, the tracker, five parts
+  EXPECT_NE(table.find("own scenes,without ledger,"), std::string::npos) << table;
+  EXPECT_EQ(Run({"--ablation", "--scenes", "sparse"}).exit_code, 2) << "of methods there is none";
+  EXPECT_EQ(Run({"--tracks", "--scenes", "beach", "--leave-out", "beach"}).exit_code, 2) << "no weights";
+  EXPECT_EQ(Run({"--tracks", "--scenes", "beach", "--leave-out", "beach", "--weights", Path("csv")}).exit_code, 2) << "none of that family";
+}
+
+TEST_F(EvalLine, LabelsByTracksAreOfEvidenceThatDoesNotKnowTheScene) {
+  const auto evidence = ReadFile(kSources / "config/evidence/lookout.txtpb");
+  fs::create_directory(Path("weights"));
+  const std::vector<std::string> line{"--tracks",      "--scenes", "beach", "--leave-out", "beach", "--weights",
+                                      Path("weights"), "--seeds",  "1",     "--seconds",   "1"};
+  WriteFile(Path("weights") + "/without-beach.txtpb", evidence);
+  EXPECT_EQ(Run(line).exit_code, 2) << "it was fitted on the scene";
+  auto other = evidence;
+  other.replace(other.find(" beach,"), 7, "");
+  WriteFile(Path("weights") + "/without-beach.txtpb", other);
+  const auto result = Run(line);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("fitted without the scene"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("single scans"), std::string::npos) << result.output;
+  EXPECT_EQ(result.output.find("MOTA"), std::string::npos) << result.output;
+}
+
 TEST_F(EvalLine, AlertsHaveTheirOwnTablesAndList) {
   const std::vector<std::string> line{"--alerts", "--scenes", "crossing", "--seeds", "2", "--seconds", "2"};
   const auto with = [&line](std::vector<std::string> more) {
@@ -105,7 +136,7 @@ TEST_F(EvalLine, AlertsHaveTheirOwnTablesAndList) {
   EXPECT_EQ(Run(with({"--methods", "ours"})).exit_code, 2);
   EXPECT_EQ(Run({"--alerts"}).exit_code, 2);
   EXPECT_EQ(Run({"--scenes", "crossing", "--list", Path("five.csv")}).exit_code, 2);
-  EXPECT_EQ(Run({"--tracks", "--captures", Path("one"), Path("two")}).exit_code, 2);
+  EXPECT_EQ(Run({"--methods", "ours", "--captures", Path("one"), Path("two")}).exit_code, 2);
 }
 
 TEST_F(EvalLine, AutoferryNeedsAFolderOfScenarios) {

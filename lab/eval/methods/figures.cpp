@@ -25,7 +25,7 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 28> kFigureNames{"main",
+constexpr std::array<std::string_view, 30> kFigureNames{"main",
                                                         "times",
                                                         "miou",
                                                         "false",
@@ -46,6 +46,8 @@ constexpr std::array<std::string_view, 28> kFigureNames{"main",
                                                         "autoferry_targets",
                                                         "tracks_targets",
                                                         "tracks_approaches",
+                                                        "tracks_ablation",
+                                                        "tracks_left_out",
                                                         "alerts_targets",
                                                         "alerts_verdicts",
                                                         "alerts_levels",

@@ -41,8 +41,6 @@ namespace fs = std::filesystem;
 
 // Returns stand in the truth in the order of time, and scans come in theirs.
 constexpr std::int64_t kReturnsKeptUs = 2'000'000;
-// Counts of returns are of the middle of a scan, which is known to about so much.
-constexpr std::int64_t kCountWithinUs = 60'000;
 
 AlertRules RulesOf(const fs::path& config_folder) {
   const auto params = tracker::LoadParams(config_folder);
@@ -73,7 +71,7 @@ AlertScores ScoresOf(AlertRun& run, const std::string& scene) {
 // `feed` is called with the handler of its datagrams; the truth knows its objects before the first.
 // `also` sees each message, behind the run.
 template <typename Feed>
-AlertScores JudgeRun(const fs::path& config_folder, const std::string& scene, const Truth& truth, const AlertRun::CountReturns& count_returns,
+AlertScores JudgeRun(const fs::path& config_folder, const std::string& scene, const Truth& truth, const CountReturns& count_returns,
                      const replay::Chain::Sink& also, const Feed& feed) {
   const auto rules = RulesOf(config_folder);
   const auto own_hull_m = OwnHullOf(config::LoadBoat(config_folder));
@@ -149,13 +147,8 @@ AlertScores JudgeScene(const AlertOptions& options, const fs::path& file, const 
 
 AlertScores JudgeCapture(const fs::path& config_folder, const std::string& scene, const CaptureWithTruth& files) {
   const auto boat = config::LoadBoat(config_folder);
-  const auto counted = ReadReturnCounts(files);
+  const auto count_returns = ReadReturnCounts(files);
   Truth truth(kCaptureToleranceUs);
-  const auto count_returns = [&counted](const TruthSpan& scan) -> std::map<int, int> {
-    const std::int64_t middle_us = scan.begin_us + (scan.end_us - scan.begin_us) / 2;
-    const auto next = counted.lower_bound(middle_us - kCountWithinUs);
-    return next != counted.end() && next->first <= middle_us + kCountWithinUs ? next->second : std::map<int, int>{};
-  };
   return JudgeRun(config_folder, scene, truth, count_returns, nullptr,
                   [&](const DatagramHandler& on_datagram) { ReadRunOfObjects(files, boat, truth, on_datagram); });
 }

@@ -23,9 +23,6 @@ bool IsOfWatch(const alert_t& alert);
 
 class AlertRun {
  public:
-  /// Returns of each object in a scan, from the time of its first shot to that of its last.
-  using CountReturns = std::function<std::map<int, int>(const TruthSpan& scan)>;
-
   /// @param truth  outlives this; knows its objects by now
   AlertRun(const Truth& truth, Polygon own_hull_m, const AlertRules& rules, CountReturns count_returns);
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
@@ -17,10 +18,13 @@
 #include "config/schema/tracker.pb.h"
 #include "lab/eval/baselines/nearest_neighbour.hpp"
 #include "lab/eval/methods/figures.hpp"
+#include "lab/eval/methods/leave_out.hpp"
 #include "lab/eval/table.hpp"
+#include "lab/eval/tracks/ablation.hpp"
 #include "lab/eval/tracks/track_run.hpp"
 #include "lab/eval/tracks/track_tables.hpp"
 #include "lab/eval/tracks/track_targets.hpp"
+#include "services/tracker/params.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout::eval {
@@ -38,22 +42,37 @@ ApproachLimits LimitsOf(const fs::path& config_folder) {
 
 // One run: `feed` is called with the handler of its datagrams.
 template <typename Feed>
-std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string& scene, Truth& truth, const Feed& feed) {
+std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string& scene, Truth& truth, const std::vector<Ablation>& ablations,
+                               const CountReturns& count, const Feed& feed) {
   const auto limits = LimitsOf(config_folder);
   std::optional<TrackRun> run;
+  const auto check = [&scene](bool is_used, std::string_view channel) {
+    if (!is_used) throw std::runtime_error(scene + ": a message on " + std::string(channel) + " cannot be used");
+  };
+  std::vector<std::string> names;
+  std::vector<std::unique_ptr<AblatedTracker>> ablated;
+  for (const auto& ablation : ablations) {
+    names.push_back(ablation.name);
+    ablated.push_back(std::make_unique<AblatedTracker>(
+        tracker::LoadParams(config_folder), ablation.without,
+        [&run, &check, name = ablation.name](Bytes bytes) { check(run->AddTracksOf(name, bytes), kTracksChannel); }));
+  }
   replay::Chain chain(config_folder, {}, [&](Utime, std::string_view channel, Bytes bytes) {
-    if (!run->Add(channel, bytes)) throw std::runtime_error(scene + ": a message on " + std::string(channel) + " cannot be used");
+    check(run->Add(channel, bytes), channel);
+    for (const auto& one : ablated) one->Add(channel, bytes);
   });
   feed([&](const replay::Datagram& datagram) {
     io::ThrowIfStopAsked();
-    if (!run) run.emplace(truth, MakeTrackers(), TrackRun::Returns::kForgotten, limits);  // the truth knows its objects now
+    // The truth knows its objects now.
+    if (!run) run.emplace(truth, ablations.empty() ? MakeTrackers() : MultiObjectTrackers(), TrackRun::Returns::kForgotten, limits, names, count);
     chain.OnDatagram(datagram);
   });
   if (!run) throw std::runtime_error(scene + ": no datagram");
   chain.Finish();
+  for (const auto& one : ablated) one->Finish();
   run->Finish();
   if (run->num_scans() == 0) throw std::runtime_error(scene + ": no whole scan with a known position");
-  if (!(run->JoinedShare() >= kLeastJoined)) {
+  if (!count && !(run->JoinedShare() >= kLeastJoined)) {
     throw std::runtime_error(
         fmt::format("{}: the truth is of another run: only {:.1f} % of the returns are in it", scene, 100.0 * run->JoinedShare()));
   }
@@ -76,6 +95,8 @@ void WriteEvents(const std::vector<TrackRow>& rows, std::uint64_t seed, const Tr
   }
 }
 
+std::vector<Ablation> AblationsOf(const TrackOptions& options) { return options.has_ablation ? Ablations() : std::vector<Ablation>(); }
+
 void AddTo(std::vector<TrackRow>& runs, std::vector<TrackRow> rows) {
   runs.insert(runs.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
 }
@@ -83,31 +104,56 @@ void AddTo(std::vector<TrackRow>& runs, std::vector<TrackRow> rows) {
 std::vector<TrackRow> RunScenes(const TrackOptions& options, std::ostream* events) {
   std::vector<TrackRow> runs;
   runtime::Progress progress("lookout-eval", stderr);
+  const auto ablations = AblationsOf(options);
+  const LeaveOutEvidence evidence(options.weights_folder, options.left_out);
+  std::optional<ConfigWithEvidence> with_evidence;
+  std::string evidence_of;
   const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
   double num_done = 0.0;
   ForEachRun(options, [&](const fs::path& file, const std::string& scene, std::uint64_t seed) {
     progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", scene, seed); });
     Truth truth(1);
-    auto rows = ScoreRun(options.config_folder, scene, truth, [&](const DatagramHandler& on_datagram) {
-      SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram);
-    });
+    if (!options.left_out.empty() && evidence_of != scene) {
+      with_evidence.emplace(options.config_folder, evidence.FileOf(scene));
+      evidence_of = scene;
+    }
+    auto rows = ScoreRun(
+        with_evidence ? with_evidence->path() : options.config_folder, scene, truth, ablations, nullptr,
+        [&](const DatagramHandler& on_datagram) { SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram); });
     if (events != nullptr) WriteEvents(rows, seed, truth, *events);
     AddTo(runs, std::move(rows));
   });
   return runs;
 }
 
-std::vector<TrackRow> RunCaptures(const TrackOptions& options, std::ostream* events) {
-  const auto captures = ListCaptures(options.captures);
-  if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
-  const ConfigOfCaptures config(options.captures, options.config_folder);
+// "second_world_long" is the world "second world long".
+std::string WorldOf(const fs::path& captures) {
+  auto name = (captures.has_filename() ? captures : captures.parent_path()).filename().string();
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+bool HasTruthOfReturns(const fs::path& captures) {
+  return std::ranges::any_of(fs::directory_iterator(captures), [](const auto& entry) { return entry.path().string().ends_with(".truth.csv.xz"); });
+}
+
+// Where none lies beside the captures, the boat is that of the other captures.
+std::vector<TrackRow> RunCaptures(const TrackOptions& options, const fs::path& folder, std::ostream* events) {
+  const bool has_returns = HasTruthOfReturns(folder);
+  const auto captures = ListCaptures(folder, has_returns ? CaptureTruth::kOfReturns : CaptureTruth::kOfObjects);
+  if (captures.empty()) throw std::runtime_error(folder.string() + ": holds no capture (NAME-SEED.pcap.xz)");
+  const auto has_boat = [](const fs::path& one) { return fs::exists(one / "boat.txtpb"); };
+  const auto with_boat = std::ranges::find_if(options.captures, has_boat);
+  const ConfigOfCaptures config(has_boat(folder) || with_boat == options.captures.end() ? folder : *with_boat, options.config_folder);
   const auto boat = config::LoadBoat(config.path());
   std::vector<TrackRow> runs;
   for (const auto& files : captures) {
     std::cerr << fmt::format("lookout-eval: {}\n", files.capture.filename().string());
     Truth truth(kCaptureToleranceUs);
-    auto rows = ScoreRun(config.path(), "second world: " + files.scene, truth,
-                         [&](const DatagramHandler& on_datagram) { ReadRun(files, boat, truth, on_datagram); });
+    const auto read = has_returns ? ReadRun : ReadRunOfObjects;
+    auto rows = ScoreRun(config.path(), WorldOf(folder) + ": " + files.scene, truth, AblationsOf(options),
+                         has_returns ? CountReturns() : ReadReturnCounts(files),
+                         [&](const DatagramHandler& on_datagram) { read(files, boat, truth, on_datagram); });
     if (events != nullptr) WriteEvents(rows, files.seed, truth, *events);
     AddTo(runs, std::move(rows));
   }
@@ -115,12 +161,16 @@ std::vector<TrackRow> RunCaptures(const TrackOptions& options, std::ostream* eve
 }
 
 // Targets first, then the scenes, and behind those of a world one row over all of them.
-std::vector<NamedTable> AllTablesOf(const std::vector<TrackWorld>& worlds) {
+std::vector<NamedTable> AllTablesOf(const TrackOptions& options, const std::vector<TrackWorld>& worlds) {
   std::vector<TrackRow> rows;
+  std::vector<TrackRow> overall;
+  for (const auto& world : worlds) AddTo(overall, OverAll(world.scenes, world.name));
+  if (options.has_ablation) return {AblationTable(overall)};
   for (const auto& world : worlds) {
     AddTo(rows, world.scenes);
     AddTo(rows, OverAll(world.scenes, world.over_all));
   }
+  if (!options.left_out.empty()) return {LeftOutTable(rows)};
   std::vector<NamedTable> tables{TargetTable(worlds, "lookout", "nearest neighbour")};
   for (auto& table : TablesOf(rows)) tables.push_back(std::move(table));
   return tables;
@@ -143,7 +193,7 @@ MultiObjectTrackers MakeTrackers() {
 int EvaluateTracks(const TrackOptions& options) {
   BeginRuns(options, !options.captures.empty(), "--tracks");
   // Outputs before all work.
-  TableFiles files(options.csv_folder, AllTablesOf({}), options.is_forced);
+  TableFiles files(options.csv_folder, AllTablesOf(options, {}), options.is_forced);
   std::optional<io::OutputFile> lost;
   if (!options.lost_file.empty()) {
     lost.emplace(options.lost_file, io::OutputOptions{.force = options.is_forced});
@@ -155,11 +205,17 @@ int EvaluateTracks(const TrackOptions& options) {
     if (!runs.empty()) worlds.push_back({name, AddUp(runs), over_all});
   };
   add_world("own scenes", RunScenes(options, events), "all scenes");
-  const bool has_captures = !options.captures.empty() && fs::exists(options.captures);
-  if (has_captures) add_world("second world", RunCaptures(options, events), "second world: all");
-  if (!options.captures.empty() && !has_captures) std::cerr << "lookout-eval: " << options.captures.string() << " is not here\n";
+  bool has_captures = false;
+  for (const auto& folder : options.captures) {
+    if (!fs::exists(folder)) {
+      std::cerr << "lookout-eval: " << folder.string() << " is not here\n";
+      continue;
+    }
+    has_captures = true;
+    add_world(WorldOf(folder), RunCaptures(options, folder, events), WorldOf(folder) + ": all");
+  }
   if (lost) lost->Commit();
-  const auto tables = AllTablesOf(worlds);
+  const auto tables = AllTablesOf(options, worlds);
   PrintTables(tables, std::cout);
   files.Commit(tables);
   if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(tables, ScopeOf(options, has_captures)));

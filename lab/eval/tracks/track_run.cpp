@@ -56,19 +56,27 @@ TrackState ToTrackState(const track_t& track) {
   return state;
 }
 
-TrackRun::TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns, const ApproachLimits& limits)
+TrackRun::TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns, const ApproachLimits& limits,
+                   const std::vector<std::string>& variants, CountReturns count)
     : truth_(truth),
       used_returns_(returns),
       limits_(limits),
+      count_(std::move(count)),
       objects_(ObjectsOf(truth)),
       trackers_(std::move(trackers)),
       collector_([](const messages::ScanMessages& scan) { return messages::HasAllParts(scan.obstacles); },
                  messages::ScanCollector::Order::kOfCompletion, kMaxWaiting,
                  [this](const messages::ScanMessages& scan) {
                    if (messages::HasAllParts(scan.obstacles)) OnScan(scan);
-                 }) {
+                 }),
+      own_(Begun(variants)) {
   for (const auto& tracker : trackers_) said_.push_back({tracker->name(), {}, {}, {}});
-  own_.tracker = "lookout";
+}
+
+std::vector<TrackRun::Said> TrackRun::Begun(const std::vector<std::string>& variants) {
+  std::vector<Said> own{{"lookout", {}, {}, {}}};
+  for (const auto& variant : variants) own.push_back({variant, {}, {}, {}});
+  return own;
 }
 
 bool TrackRun::Add(std::string_view channel, Bytes bytes) {
@@ -82,7 +90,13 @@ bool TrackRun::Add(std::string_view channel, Bytes bytes) {
   }
   if (channel != kTracksChannel) return true;
   const auto message = bus::Decode<tracks_t>(bytes);
-  return message && OnTracks(*message);
+  return message && OnTracks(0, *message);
+}
+
+bool TrackRun::AddTracksOf(std::string_view variant, Bytes bytes) {
+  const auto own = std::ranges::find(own_, variant, &Said::tracker);
+  const auto message = bus::Decode<tracks_t>(bytes);
+  return own != own_.end() && message && OnTracks(static_cast<std::size_t>(own - own_.begin()), *message);
 }
 
 void TrackRun::Finish() {
@@ -142,13 +156,17 @@ void TrackRun::OnScan(const messages::ScanMessages& scan) {
     origin_ = origin;
     track_truth_ = std::make_unique<TrackTruth>(truth_, origin);
   }
-  Waiting waiting{truth_scans_.size(), Join(scan), {}, {}};
-  std::map<int, int> num_returns;
+  Waiting waiting{.index = truth_scans_.size(),
+                  .returns = count_ ? std::vector<LabelledReturn>() : Join(scan),
+                  .own_labels = {},
+                  .parts = std::vector<std::vector<tracks_t>>(own_.size())};
+  auto num_returns = count_ ? count_({head.utime_us, head.end_utime_us}) : std::map<int, int>();
   for (const auto& one : waiting.returns) ++num_returns[one.object];
   truth_scans_.push_back(track_truth_->At(head.end_utime_us, num_returns));
 
   const auto land = LandOf(scan);
-  if (!scan.segments.empty()) {
+  const bool has_labels = !scan.segments.empty() && !count_;
+  if (has_labels) {
     const auto apart = FiguresOf(waiting.returns, false, [](const LabelledReturn& one) { return one.label; });
     waiting.own_labels.segments = apart.iou;
     waiting.own_labels.single = FiguresOf(waiting.returns, TrackLabels({}, land));
@@ -158,28 +176,31 @@ void TrackRun::OnScan(const messages::ScanMessages& scan) {
     auto& said = said_[i];
     said.labels.segments.Add(waiting.own_labels.segments);
     said.labels.single.Add(waiting.own_labels.single);
-    if (!scan.segments.empty()) said.labels.by_tracks.Add(FiguresOf(waiting.returns, TrackLabels(tracks[i], land)));
+    if (has_labels) said.labels.by_tracks.Add(FiguresOf(waiting.returns, TrackLabels(tracks[i], land)));
     said.tracks.push_back(std::move(tracks[i]));
   }
-  own_.tracks.emplace_back();
-  own_.alerts.emplace_back();
+  for (auto& own : own_) {
+    own.tracks.emplace_back();
+    own.alerts.emplace_back();
+    own.labels.segments.Add(waiting.own_labels.segments);
+    own.labels.single.Add(waiting.own_labels.single);
+  }
   scan_at_[scan.utime_us] = waiting.index;
-  own_.labels.segments.Add(waiting.own_labels.segments);
-  own_.labels.single.Add(waiting.own_labels.single);
   waiting_[scan.utime_us] = std::move(waiting);
   if (waiting_.size() > kMaxWaiting) waiting_.erase(waiting_.begin());
 }
 
-bool TrackRun::OnTracks(const tracks_t& message) {
+bool TrackRun::OnTracks(std::size_t own, const tracks_t& message) {
   if (!messages::IsWellFormed(message)) return false;
-  has_own_ = true;
+  own_[own].has_come = true;
   const auto found = waiting_.find(message.utime_us);
   if (found == waiting_.end()) return true;  // of a scan that is not scored
   auto& waiting = found->second;
-  waiting.parts.push_back(message);
-  if (!std::cmp_equal(waiting.parts.size(), message.num_parts)) return true;
-  TakeTracks(waiting);
-  waiting_.erase(found);
+  auto& parts = waiting.parts[own];
+  parts.push_back(message);
+  if (!std::cmp_equal(parts.size(), message.num_parts)) return true;
+  TakeTracks(own_[own], parts, waiting);
+  if (++waiting.num_done == own_.size()) waiting_.erase(found);
   return true;
 }
 
@@ -188,23 +209,25 @@ bool TrackRun::OnAlerts(const alerts_t& message) {
   if (scan == scan_at_.end() || message.is_watch) return true;
   for (const auto& alert : message.alerts) {
     const bool holds = alert.state == alert_t::STATE_ACTIVE || alert.state == alert_t::STATE_ACKNOWLEDGED;
-    own_.alerts[scan->second].push_back({alert.id, alert.track_id, alert.cause == alert_t::CAUSE_CLOSEST_APPROACH, holds});
+    own_.front().alerts[scan->second].push_back({alert.id, alert.track_id, alert.cause == alert_t::CAUSE_CLOSEST_APPROACH, holds});
   }
   return true;
 }
 
-void TrackRun::TakeTracks(const Waiting& waiting) {
-  auto& tracks = own_.tracks[waiting.index];
-  for (const auto& part : waiting.parts) {
+void TrackRun::TakeTracks(Said& own, const std::vector<tracks_t>& parts, const Waiting& waiting) {
+  auto& tracks = own.tracks[waiting.index];
+  for (const auto& part : parts) {
     for (const auto& track : part.tracks) tracks.push_back(ToTrackState(track));
   }
   if (waiting.own_labels.segments.count == 0) return;
-  own_.labels.by_tracks.Add(FiguresOf(waiting.returns, TrackLabels(waiting.parts, TrackLabels::Land::kOne)));
+  own.labels.by_tracks.Add(FiguresOf(waiting.returns, TrackLabels(parts, TrackLabels::Land::kOne)));
 }
 
 std::vector<TrackRun::Row> TrackRun::Rows() const {
   std::vector<Row> rows;
-  if (has_own_) rows.push_back({own_.tracker, ScoreTracks(truth_scans_, own_.tracks, own_.alerts, limits_), own_.labels});
+  for (const auto& own : own_) {
+    if (own.has_come) rows.push_back({own.tracker, ScoreTracks(truth_scans_, own.tracks, own.alerts, limits_), own.labels});
+  }
   for (const auto& said : said_) rows.push_back({said.tracker, ScoreTracks(truth_scans_, said.tracks, {}, limits_), said.labels});
   return rows;
 }

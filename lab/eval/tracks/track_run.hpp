@@ -48,10 +48,15 @@ class TrackRun {
   /// @param truth     outlives this
   /// @param trackers  fed with OBSTACLES; each has a row of its own
   /// @param returns   what becomes of returns of the truth that were used
-  TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns, const ApproachLimits& limits = {});
+  /// @param variants  names of trackers beside the boat's whose TRACKS are added; each has a row of its own
+  /// @param count     where the truth holds no returns: how many each object has; then no labels are scored
+  TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns, const ApproachLimits& limits = {},
+           const std::vector<std::string>& variants = {}, CountReturns count = nullptr);
 
   /// LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS and ALERTS; others are left out. @return false where the message cannot be used
   bool Add(std::string_view channel, Bytes bytes);
+  /// TRACKS of one of the variants, after the OBSTACLES of its scan. @return false where the message cannot be used
+  bool AddTracksOf(std::string_view variant, Bytes bytes);
   void Finish();
 
   struct Row {
@@ -59,13 +64,13 @@ class TrackRun {
     TrackScores scores;
     LabelScores labels;
   };
-  /// Of the trackers, and the boat's own first where TRACKS came. Whole scans on the map count, from the first that has all its
+  /// Of the trackers, before them those of which TRACKS came, the boat's own first. Whole scans on the map count, from the first that has all its
   /// obstacles there, and a scan without TRACKS has no tracks.
   std::vector<Row> Rows() const;
 
   std::int64_t num_scans() const { return static_cast<std::int64_t>(truth_scans_.size()); }
-  bool has_own_tracks() const { return has_own_; }
-  /// Of the returns of these scans, the share that is in the truth.
+  bool has_own_tracks() const { return own_.front().has_come; }
+  /// Of the returns of these scans, the share that is in the truth; NaN where it holds none.
   double JoinedShare() const { return static_cast<double>(num_joined_) / static_cast<double>(num_returns_); }
 
  private:
@@ -79,19 +84,22 @@ class TrackRun {
     std::vector<std::vector<TrackState>> tracks;  // by scan
     LabelScores labels;
     std::vector<std::vector<StatedAlert>> alerts;  // by scan
+    bool has_come = false;
   };
   // Scans that wait for TRACKS.
   struct Waiting {
     std::size_t index = 0;  // of the scan
     std::vector<LabelledReturn> returns;
-    LabelScores own_labels;  // without those of tracks
-    std::vector<tracks_t> parts;
+    LabelScores own_labels;                    // without those of tracks
+    std::vector<std::vector<tracks_t>> parts;  // of own_
+    std::size_t num_done = 0;                  // of these
   };
 
   void OnScan(const messages::ScanMessages& scan);
-  bool OnTracks(const tracks_t& message);
+  bool OnTracks(std::size_t own, const tracks_t& message);
   bool OnAlerts(const alerts_t& message);
-  void TakeTracks(const Waiting& waiting);
+  static std::vector<Said> Begun(const std::vector<std::string>& variants);
+  void TakeTracks(Said& own, const std::vector<tracks_t>& parts, const Waiting& waiting);
   std::vector<LabelledReturn> Join(const messages::ScanMessages& scan);
   LabelFigures FiguresOf(const std::vector<LabelledReturn>& returns, bool is_land_one,
                          const std::function<int(const LabelledReturn&)>& label_of) const;
@@ -101,15 +109,15 @@ class TrackRun {
   Truth& truth_;
   Returns used_returns_;
   ApproachLimits limits_;
+  CountReturns count_;
   std::map<std::int32_t, data::ScanObject> objects_;
   MultiObjectTrackers trackers_;
   messages::ScanCollector collector_;
   MapOrigin origin_{};
   std::unique_ptr<TrackTruth> track_truth_;
   std::vector<TrueScan> truth_scans_;
-  std::vector<Said> said_;  // of trackers_
-  Said own_;                // of TRACKS
-  bool has_own_ = false;
+  std::vector<Said> said_;                       // of trackers_
+  std::vector<Said> own_;                        // of TRACKS: the boat's, then the variants
   std::map<std::int64_t, std::size_t> scan_at_;  // by utime_us of the scan
   std::map<std::int64_t, Waiting> waiting_;      // by utime_us of the scan
   std::int64_t num_returns_ = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <google/protobuf/text_format.h>
 #include <limits>
 #include <map>
 #include <optional>
@@ -13,8 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "config/schema/segmenter.pb.h"
 #include "lab/data/csv_file.hpp"
 #include "lab/eval/methods/figures.hpp"
 #include "lab/sim/scene_file.hpp"
@@ -242,13 +246,18 @@ void ReadRunOfObjects(const CaptureWithTruth& files, const config::BoatFacts& bo
   SendCapture(files, on_datagram);
 }
 
-std::map<std::int64_t, std::map<int, int>> ReadReturnCounts(const CaptureWithTruth& files) {
+CountReturns ReadReturnCounts(const CaptureWithTruth& files) {
+  constexpr std::int64_t kWithinUs = 60'000;  // of the middle of a scan, which its rows have
   std::map<std::int64_t, std::map<int, int>> counts;
   data::CsvFile csv(files.objects, {"utime_us", "object_id", "returns"});
   while (csv.Next()) {
     counts[csv.WholeNumber(0, 0, kMaxTime)][static_cast<int>(csv.WholeNumber(1, 1, kMaxId))] = static_cast<int>(csv.WholeNumber(2, 0, kMaxId));
   }
-  return counts;
+  return [counts = std::move(counts)](const TruthSpan& scan) -> std::map<int, int> {
+    const std::int64_t middle_us = scan.begin_us + (scan.end_us - scan.begin_us) / 2;
+    const auto next = counts.lower_bound(middle_us - kWithinUs);
+    return next != counts.end() && next->first <= middle_us + kWithinUs ? next->second : std::map<int, int>{};
+  };
 }
 
 TempFolder::TempFolder() {
@@ -265,6 +274,19 @@ TempFolder::~TempFolder() {
 ConfigOfCaptures::ConfigOfCaptures(const fs::path& captures, const fs::path& config_folder) {
   fs::copy(config_folder, path(), fs::copy_options::recursive);
   if (fs::exists(captures / "boat.txtpb")) fs::copy_file(captures / "boat.txtpb", path() / "boat.txtpb", fs::copy_options::overwrite_existing);
+}
+
+ConfigWithEvidence::ConfigWithEvidence(const fs::path& config_folder, const fs::path& evidence_file) {
+  fs::copy(config_folder, path(), fs::copy_options::recursive);
+  const auto file = path() / "segmenter.txtpb";
+  config::Segmenter message;
+  config::LoadText(file, message);
+  message.set_evidence(fs::absolute(evidence_file));
+  std::string text;
+  google::protobuf::TextFormat::PrintToString(message, &text);
+  io::OutputFile out(file, io::OutputOptions{.force = true});
+  out.Write(text);
+  out.Commit();
 }
 
 }  // namespace lookout::eval

@@ -70,8 +70,8 @@ void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth
 /// The same without the objects of returns: no .truth.csv.xz need be there.
 void ReadRunOfObjects(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram);
 
-/// Returns of each object in each scan of a capture, as .objects.csv.xz counts them: by the time of the middle of the scan, then by object.
-std::map<std::int64_t, std::map<int, int>> ReadReturnCounts(const CaptureWithTruth& files);
+/// As .objects.csv.xz counts them, scan by scan; nothing where it has none of that time.
+CountReturns ReadReturnCounts(const CaptureWithTruth& files);
 
 /// A new, empty folder that goes with all that is in it.
 class TempFolder {
@@ -92,6 +92,17 @@ class ConfigOfCaptures {
  public:
   /// Copies config_folder, and boat.txtpb of the captures over it where there is one. @throws std::filesystem::filesystem_error
   ConfigOfCaptures(const std::filesystem::path& captures, const std::filesystem::path& config_folder);
+  const std::filesystem::path& path() const { return folder_.path(); }
+
+ private:
+  TempFolder folder_;
+};
+
+/// A config folder whose segmenter has other evidence: as long as this lives.
+class ConfigWithEvidence {
+ public:
+  /// @throws std::filesystem::filesystem_error; config::ConfigError; std::runtime_error
+  ConfigWithEvidence(const std::filesystem::path& config_folder, const std::filesystem::path& evidence_file);
   const std::filesystem::path& path() const { return folder_.path(); }
 
  private:

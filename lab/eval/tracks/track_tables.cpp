@@ -153,6 +153,25 @@ std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::stri
   return all;
 }
 
+NamedTable AblationTable(const std::vector<TrackRow>& rows) {
+  Table table({"scenes", "tracker", "MOTA_%", "IDF1_%", "no_switch_%", "false_tracks_h", "doubles_%", "confirmed_median_s", "called_moving",
+               "speed_95_mps", "gain", "land_%", "lost_%"});
+  for (const auto& [scene, row] : rows) {
+    const auto& scores = row.scores;
+    table.Add({scene, row.tracker, Percent(scores.Mota()), Percent(scores.Idf1()),
+               Percent(ShareOf(scores.num_runs_without_switch, scores.num_runs), 0), Number(scores.FalseTracksPerHour(), 0),
+               Percent(scores.has_double.value(), 2), Percentile(scores.confirmed_s.front(), 50, 1), Number(scores.num_called_moving),
+               Percentile(scores.speed_error_mps, 95, 2), Percent(row.labels.Gain()), Percent(row.labels.by_tracks.land_iou.value()),
+               Percent(row.labels.by_tracks.lost.value())});
+  }
+  return {"tracks_ablation", "tracks: what each part of the tracker is worth", std::move(table)};
+}
+
+NamedTable LeftOutTable(const std::vector<TrackRow>& rows) {
+  auto labels = Labels(rows);
+  return {"tracks_left_out", labels.title + ", with evidence that was fitted without the scene", std::move(labels.table)};
+}
+
 std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows) {
   return {Identities(rows), Distances(rows), Times(rows), States(rows), Approaches(rows), Labels(rows)};
 }

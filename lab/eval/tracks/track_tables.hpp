@@ -21,5 +21,9 @@ std::vector<TrackRow> AddUp(const std::vector<TrackRow>& runs);
 std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::string& name);
 
 std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows);
+/// What most changes where a part of the tracker is left out: a line of each row.
+NamedTable AblationTable(const std::vector<TrackRow>& rows);
+/// Labels alone, of runs with evidence that does not know their scene.
+NamedTable LeftOutTable(const std::vector<TrackRow>& rows);
 
 }  // namespace lookout::eval

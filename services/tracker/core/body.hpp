@@ -73,6 +73,8 @@ class Body {
   /// Another part of the same thing is seen: place and motion stay, since another part says nothing of them.
   /// @param has_jumped  it was not where it should be: the velocity is less sure
   void AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped);
+  /// Forgets all parts but the one that was seen last.
+  void KeepSeenPart() { others_.clear(); }
 
   /// State of the hypothesis that holds: moving where its probability is above the threshold.
   bool IsMoving(double threshold) const { return moving_probability_ > threshold; }

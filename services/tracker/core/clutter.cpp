@@ -1,6 +1,7 @@
 #include "services/tracker/core/clutter.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include "common/core/angles.hpp"
@@ -23,19 +24,31 @@ std::size_t ClutterMap::IndexOf(const Eigen::Vector2d& place_vessel_m) {
   return ring * kSectors + sector;
 }
 
-void ClutterMap::End(double dt_s) {
-  const double gain = std::clamp(dt_s / kMemoryS, 0.0, 1.0);
-  for (std::size_t i = 0; i < means_.size(); ++i) means_[i] += gain * (counts_[i] - means_[i]);
+std::size_t ClutterMap::ClassOf(int num_returns) {
+  return std::min<std::size_t>(std::bit_width(static_cast<unsigned>(std::max(num_returns, 1))) - 1, kClasses - 1);
 }
 
-double ClutterMap::DensityAt(const Eigen::Vector2d& place_vessel_m) const {
+void ClutterMap::End(double dt_s) {
+  const double gain = std::clamp(dt_s / kMemoryS, 0.0, 1.0);
+  for (std::size_t k = 0; k < kClasses; ++k) {
+    for (std::size_t i = 0; i < means_[k].size(); ++i) means_[k][i] += gain * (counts_[k][i] - means_[k][i]);
+  }
+}
+
+double ClutterMap::DensityAt(const Eigen::Vector2d& place_vessel_m, int num_returns) const {
   const std::size_t index = IndexOf(place_vessel_m);
   const std::size_t ring_index = index / kSectors;
   const auto ring = static_cast<double>(ring_index);
   const double area_m2 = kPi * kRingM * kRingM * (2.0 * ring + 1.0) / kSectors;
-  return kLeastDensity + means_[index] / area_m2;
+  double num_false = 0.0;
+  for (std::size_t k = std::max<std::size_t>(ClassOf(num_returns), 1) - 1; k < kClasses; ++k) num_false += means_[k][index];
+  return kLeastDensity + num_false / area_m2;
 }
 
-double ClutterMap::total() const { return std::accumulate(means_.begin(), means_.end(), 0.0); }
+double ClutterMap::total() const {
+  double total = 0.0;
+  for (const auto& means : means_) total += std::accumulate(means.begin(), means.end(), 0.0);
+  return total;
+}
 
 }  // namespace lookout::tracker

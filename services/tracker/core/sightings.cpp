@@ -84,6 +84,18 @@ std::int32_t FrameOf(const PieceReturns& piece, const std::vector<const Followed
   return 0;
 }
 
+// The groups of the scan itself: a group for each segment.
+Ledger::Groups GroupsOfSegments(const std::vector<Ledger::Piece>& pieces) {
+  Ledger::Groups groups;
+  std::map<std::int32_t, std::int32_t> group_of;
+  for (const auto& piece : pieces) {
+    const auto [group, is_new] = group_of.try_emplace(piece.segment, static_cast<std::int32_t>(group_of.size()));
+    if (is_new) groups.land.push_back(piece.is_land ? 1.0 : -1.0);
+    groups.of_piece.push_back(group->second);
+  }
+  return groups;
+}
+
 // The pieces of a sighting, of several segments or of a part of one, as one segment.
 Seen Together(const ScanInput& scan, const std::map<std::size_t, std::size_t>& returns_of, const Sighting& sighting) {
   const auto most = std::ranges::max_element(returns_of, {}, [](const auto& one) { return one.second; })->first;
@@ -153,7 +165,7 @@ void Measure(const Sight& sight, Sighting& sighting) {
 
 }  // namespace
 
-Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger& ledger) {
+Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger* ledger) {
   Sightings sightings;
   const auto pieces = PiecesOf(scan, sight);
   if (pieces.empty()) {
@@ -167,7 +179,7 @@ Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::dequ
       const auto& segment = scan.seen[piece.segment];
       asked.push_back({static_cast<std::int32_t>(piece.segment), segment.is_land && segment.is_sure, FrameOf(piece, owners), piece.places_m});
     }
-    AddGroups(scan, pieces, ledger.Divide(asked, frames), sightings);
+    AddGroups(scan, pieces, ledger != nullptr ? ledger->Divide(asked, frames) : GroupsOfSegments(asked), sightings);
   }
   for (std::size_t i = 0; i < sightings.all.size(); ++i) {
     sightings.all[i].seen.segment_id = static_cast<std::int32_t>(i) + 1;

@@ -39,6 +39,7 @@ struct Sightings {
 
 /// Asks the ledger. Where the scan has no labels, its segments are the sightings.
 /// @param tracks  predicted to the scan
-Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger& ledger);
+/// @param ledger  nullptr: segments stay as the scan has them
+Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger* ledger);
 
 }  // namespace lookout::tracker

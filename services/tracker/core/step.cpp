@@ -15,7 +15,7 @@ void Step::Run() {
     EndUnseen();
     return;
   }
-  auto sightings = SightingsOf(scan_, known_.sight, known_.tracks, known_.ledger);
+  auto sightings = SightingsOf(scan_, known_.sight, known_.tracks, params_.without.ledger ? nullptr : &known_.ledger);
   sightings_ = std::move(sightings.all);
   num_groups_ = sightings.num_groups;
   sighting_of_piece_ = std::move(sightings.of_piece);

@@ -27,6 +27,8 @@ double Step::CostOf(const Followed& track, std::size_t i) {
   const double noise = std::sqrt(0.5 * seen.covariance_relative_m2.trace());
   const double gate = 0.5 + 2.0 * sd + std::min(3.0 * std::max(0.0, noise - 0.3), 6.0);
   if ((sightings_[i].middle_m - track.middle_m).norm() > gate + track.radius_m + sightings_[i].radius_m) return kMostCost;
+  const double young = track.is_confirmed ? 0.0 : kYoungCost;  // a known track comes before one that came up in it
+  if (params_.without.outlines) return (sightings_[i].middle_m - track.middle_m).norm() / gate + young;
   const double gap = GapOf(track.outline_m, seen.outline_m).distance_m;
   if (gap > gate) return kMostCost;
   const double area_track = std::max(0.1, AreaOf(track.outline_m));
@@ -34,8 +36,10 @@ double Step::CostOf(const Followed& track, std::size_t i) {
   const auto both = Intersection(track.outline_m, seen.outline_m);
   const double overlap = both.empty() ? 0.0 : std::min(1.0, std::max(AreaOf(both), 0.1) / std::min(area_track, area_seen));
   const auto shift = track.body->ShiftOf(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, sightings_[i].range_m);
-  const double young = track.is_confirmed ? 0.0 : kYoungCost;  // a known track comes before one that came up in it
-  return 0.1 * std::min(shift.off, 30.0) + 0.1 * std::min(shift.misfit, 20.0) + (1.0 - overlap) + 0.1 * std::abs(Log(area_seen / area_track)) + young;
+  // Mean number of such pieces of clutter within the gate, as drops of rain in the outline of a boat.
+  const double chance = known_.clutter.DensityAt(ToVessel(sightings_[i].middle_m), seen.num_returns) * (area_track + 4.0 * gate * gate);
+  return Log(1.0 + chance) + 0.1 * std::min(shift.off, 30.0) + 0.1 * std::min(shift.misfit, 20.0) + (1.0 - overlap) +
+         0.1 * std::abs(Log(area_seen / area_track)) + young;
 }
 
 // Computed once for a segment, on demand.
@@ -151,7 +155,7 @@ void Step::AssignRest() {
   }
   TakeNearest(pairs, [&](const Near& pair) {
     Hit(known_.tracks[pair.track], pair.seen, sightings_[pair.seen].seen, SidesOf(pair.seen));
-    known_.clutter.Add(ToVessel(sightings_[pair.seen].middle_m));
+    known_.clutter.Add(ToVessel(sightings_[pair.seen].middle_m), sightings_[pair.seen].seen.num_returns);
   });
 }
 

@@ -35,7 +35,7 @@ Eigen::Vector2d Step::ToVessel(const Eigen::Vector2d& place_m) const {
 void Step::Look() {
   for (auto& track : known_.tracks) {
     track.is_met = false;
-    if (!is_sight_known_) {
+    if (!is_sight_known_ || params_.without.beams) {
       track.detection = kDetectionUnknown;
       continue;
     }
@@ -57,7 +57,7 @@ void Step::Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen
   const double sd = std::max(track.body ? 0.3 : 0.5, std::sqrt(0.5 * seen.covariance_relative_m2.trace()));
   const double off = (track.middle_m - expected_m).norm();
   const double density = Exp(-0.5 * std::min(off * off / (sd * sd), 50.0)) / (kTwoPi * sd * sd);
-  const double clutter = known_.clutter.DensityAt(ToVessel(sighting.middle_m));
+  const double clutter = known_.clutter.DensityAt(ToVessel(sighting.middle_m), seen.num_returns);
   const double detection = std::max(track.detection, 0.1);
   track.log_odds += Log(1.0 - detection + detection * density / clutter);
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
@@ -131,7 +131,7 @@ void Step::AskWatched(Followed& track) const {
     return other.is_confirmed && !other.is_ended && !other.is_seen_now &&
            (other.middle_m - track.first_m).norm() < kBesideLostM + other.radius_m + track.first_radius_m;
   });
-  track.watched = is_beside ? Watched{} : known_.watched.At(track.first_m, track.top_m, track.first);
+  track.watched = is_beside || params_.without.watched_water ? Watched{} : known_.watched.At(track.first_m, track.top_m, track.first);
   track.watched_top_m = track.top_m;
 }
 
@@ -148,7 +148,7 @@ void Step::Begin() {
   std::stable_partition(order.begin(), order.end(), [this](std::size_t i) { return sightings_[i].seen.is_sure; });
   for (const std::size_t i : order) {
     const auto& seen = sightings_[i].seen;
-    known_.clutter.Add(ToVessel(sightings_[i].middle_m));
+    known_.clutter.Add(ToVessel(sightings_[i].middle_m), seen.num_returns);
     if (known_.tracks.size() >= kMostTracks) {
       ++known_.num_over_limit;
       continue;

@@ -49,6 +49,7 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
   } else if (++track.num_misfits >= kMisfitsToAddPart) {
     track.num_misfits = 0;
     track.body->AddPart(seen.outline_m, sides, sighting.range_m, shift.off >= kMostOff && !shift.is_part);
+    if (params_.without.parts) track.body->KeepSeenPart();
   }
   Place(track);
 }

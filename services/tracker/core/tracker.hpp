@@ -12,6 +12,7 @@
 #include "services/tracker/core/encounter.hpp"
 #include "services/tracker/core/picture.hpp"
 #include "services/tracker/core/scan.hpp"
+#include "services/tracker/core/without.hpp"
 
 namespace lookout::tracker {
 
@@ -24,6 +25,7 @@ struct TrackerParams {
   double moving_probability = 0.95;   // above which a track moves
   double confirm_probability = 0.95;  // existence
   double end_probability = 0.01;
+  Without without;
 };
 
 class Tracker {

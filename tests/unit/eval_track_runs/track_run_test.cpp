@@ -10,10 +10,12 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "lab/eval/baselines/nearest_neighbour.hpp"
+#include "lab/eval/tracks/ablation.hpp"
 #include "lab/eval/tracks/track_sources.hpp"
 #include "lab/eval/tracks/track_tables.hpp"
 #include "lab/eval/tracks/track_targets.hpp"
 #include "lab/sim/scene_file.hpp"
+#include "services/tracker/params.hpp"
 #include "tests/support/files.hpp"
 #include "tools/replay/chain.hpp"
 
@@ -167,6 +169,60 @@ TEST(TrackRun, ReturnsAreLabelledByTheTrackOfTheirPiece) {
   EXPECT_LT(as_one.labels.by_tracks.iou.value(), of_segments - 0.1);
   const auto as_land = RowOfPieces([](std::int16_t) { return tracks_t::PIECE_LAND; });
   EXPECT_DOUBLE_EQ(as_land.labels.by_tracks.iou.value(), as_one.labels.by_tracks.iou.value());
+}
+
+TEST(TrackRun, ATrackerOfWhichNothingIsLeftOutSaysWhatTheBoatsSays) {
+  const auto params = tracker::LoadParams(support::kCatabotConfig);
+  std::vector<std::vector<std::uint8_t>> own;
+  std::vector<std::vector<std::uint8_t>> whole;
+  std::vector<std::vector<std::uint8_t>> without_ledger;
+  const auto into = [](auto& list) { return [&list](Bytes bytes) { list.emplace_back(bytes.begin(), bytes.end()); }; };
+  AblatedTracker same(params, {}, into(whole));
+  AblatedTracker other(params, {.ledger = true}, into(without_ledger));
+  const Crossing crossing([&](TrackRun&, std::string_view channel, Bytes bytes) {
+    same.Add(channel, bytes);
+    other.Add(channel, bytes);
+    if (channel == kTracksChannel) own.emplace_back(bytes.begin(), bytes.end());
+  });
+  same.Finish();
+  ASSERT_FALSE(own.empty());
+  EXPECT_EQ(whole, own);
+  EXPECT_EQ(without_ledger.size(), own.size());
+  EXPECT_NE(without_ledger, own);
+}
+
+TEST(TrackRun, EachVariantHasARowOfItsOwn) {
+  Truth truth(1);
+  truth.AddObject(0, {});
+  TrackRun run(truth, Plain(), TrackRun::Returns::kForgotten, {}, {"a", "b"});
+  tracks_t tracks{};
+  tracks.num_parts = 1;
+  EXPECT_TRUE(run.AddTracksOf("b", bus::Encode(tracks)));
+  EXPECT_FALSE(run.AddTracksOf("c", bus::Encode(tracks))) << "nobody has said that there is one";
+  EXPECT_FALSE(run.has_own_tracks());
+  const auto rows = run.Rows();
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].tracker, "b");
+}
+
+TEST(TrackRun, WhereReturnsAreCountedNoLabelsAreScored) {
+  Truth truth(1);
+  std::optional<TrackRun> run;
+  replay::Chain chain(support::kCatabotConfig, {}, [&](Utime, std::string_view channel, Bytes bytes) { EXPECT_TRUE(run->Add(channel, bytes)); });
+  const auto file = sim::FindScene("crossing", support::kCatabotConfig);
+  const auto count = [](const TruthSpan& scan) {
+    EXPECT_NEAR(static_cast<double>(scan.end_us - scan.begin_us), 1e5, 1e4);
+    return std::map<int, int>{{1, 7}};
+  };
+  SimulateRun(support::kCatabotConfig, file, 1, kSeconds, truth, [&](const replay::Datagram& datagram) {
+    if (!run) run.emplace(truth, Plain(), TrackRun::Returns::kForgotten, ApproachLimits{}, std::vector<std::string>{}, count);
+    chain.OnDatagram(datagram);
+  });
+  chain.Finish();
+  run->Finish();
+  const auto rows = run->Rows();
+  EXPECT_NEAR(static_cast<double>(rows.front().scores.num_expected), 10.0 * kSeconds, 3.0) << "one thing in each scan has returns";
+  EXPECT_EQ(rows.front().labels.segments.count, 0);
 }
 
 TEST(TrackRun, WhatCannotBeDecodedIsRefused) {

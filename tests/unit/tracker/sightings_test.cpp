@@ -33,7 +33,7 @@ class Lookout {
  public:
   Sightings Ask(const ScanInput& scan, const std::deque<Followed>& tracks = {}) {
     sight_.Begin(scan);
-    return SightingsOf(scan, sight_, tracks, ledger_);
+    return SightingsOf(scan, sight_, tracks, &ledger_);
   }
   ScanInput Next(const test::Segmenter& segmenter, const test::Walls& walls = kScene) {
     return test::Look(num_scans_++, Eigen::Vector2d::Zero(), walls, segmenter, random_);

@@ -28,6 +28,7 @@ struct Moment {
   Walls walls;
   test::Segmenter segmenter;
   Eigen::Vector2d own_m = Eigen::Vector2d::Zero();
+  int num_drops = 0;  // of rain, 2 to 9 m away
 };
 using Situation = std::function<Moment(int scan)>;
 
@@ -74,13 +75,36 @@ struct Story {
   }
 };
 
+// Segments of one return each, of which nothing is sure.
+void AddRain(int num_drops, const Eigen::Vector2d& own_m, std::mt19937_64& random, ScanInput& input) {
+  constexpr int kFirstSegment = 1000;
+  std::uniform_real_distribution<double> range_m(2.0, 9.0);
+  std::uniform_real_distribution<double> bearing_rad(0.0, kTwoPi);
+  for (int i = 0; i < num_drops; ++i) {
+    const double bearing = bearing_rad(random);
+    Seen drop;
+    drop.segment_id = kFirstSegment + i;
+    drop.time = input.end_time;
+    drop.is_sure = false;
+    drop.thing_probability = 0.01;
+    drop.num_returns = 1;
+    drop.position_m = own_m + range_m(random) * Eigen::Vector2d(std::sin(bearing), std::cos(bearing));
+    drop.outline_m = {drop.position_m};
+    drop.covariance_relative_m2 = 0.0004 * Eigen::Matrix2d::Identity();
+    drop.covariance_m2 = 0.01 * Eigen::Matrix2d::Identity();
+    drop.top_above_water_m = 1.0;
+    input.seen.push_back(drop);
+  }
+}
+
 Story Follow(int num_scans, const Situation& situation) {
   Story story;
   Tracker tracker(test::WallParams());
   std::mt19937_64 random(1);
   for (int scan = 0; scan < num_scans; ++scan) {
     const auto moment = situation(scan);
-    const auto input = test::Look(scan, moment.own_m, moment.walls, moment.segmenter, random);
+    auto input = test::Look(scan, moment.own_m, moment.walls, moment.segmenter, random);
+    AddRain(moment.num_drops, moment.own_m, random, input);
     const auto& picture = tracker.Update(input);
     for (const std::int16_t piece : std::set(input.sweep->piece.begin(), input.sweep->piece.end())) {
       const auto at = static_cast<std::size_t>(piece - 1);
@@ -288,6 +312,27 @@ TEST(Situation, AKayakOfWhichBowAndPaddlerAreSeenByTurnsMovesAllTheTime) {
 
 // 7 m long; the segmenter cuts off the stern.
 Walls BowAndStern(double way_m) { return Box({-18.0 + way_m, 12.0}, 4.0, 2.0, 1.0, 1) + Box({-21.5 + way_m, 12.0}, 3.0, 2.0, 1.6, 2); }
+
+// A drop in the outline of a boat is no boat, and in rain it is no surprise. A wave hides the kayak in one scan of four.
+TEST(Situation, AKayakAndABuoyStandOutOfHeavyRain) {
+  const auto story = Follow(250, [](int scan) {
+    const auto buoy = Box({4.0, -5.0}, 0.6, 0.6, 0.6, 2);
+    return Moment{.walls = scan % 4 == 3 ? buoy : Box({-8.0 + 0.08 * scan, 6.5}, 4.5, 0.6, 0.9, 1) + buoy,
+                  .segmenter =
+                      [](int thing, const Eigen::Vector2d&) {
+                        return Called{thing, false, thing, 0.6};
+                      },
+                  .num_drops = 1500};
+  });
+  const auto kayak = story.NameOf(1, 0);
+  const auto buoy = story.NameOf(2, 0);
+  EXPECT_GT(kayak, 0);
+  EXPECT_GT(buoy, 0);
+  EXPECT_EQ(story.Reported(), (Labels{kayak, buoy}));
+  EXPECT_EQ(story.NumWithout(kayak, 40), 0);
+  EXPECT_EQ(story.NumWithout(buoy, 30), 0);
+  ExpectSpeed(story, kayak, {0.8, 0.0});
+}
 
 TEST(Situation, ABoatLosesItsSternInEachThirdScan) {
   for (const int every : {3, 2}) {
