@@ -79,10 +79,10 @@ class Bus {
   /// Calls `handler` each time that ReleaseHeld is called.
   void OnRelease(std::function<void(bool is_end)> handler) { on_release_.push_back(std::move(handler)); }
 
-  /// Hands out messages that were held, where it shows by now that they are to be taken. To be called some ten times a second, come what may.
+  /// Hands out held messages that turn out to belong to the kept publisher. Must be called some ten times a second.
   ///
-  /// @param is_end  nothing more will come
-  /// @throws what a handler threw
+  /// @param is_end  no further message will come
+  /// @throws exceptions of a handler
   void ReleaseHeld(bool is_end = false);
 
   static constexpr std::chrono::milliseconds kMostUnattended{250};

@@ -29,7 +29,7 @@ inline constexpr Channel kPose{"POSE", "pose_t", "navigator", 50, 1000, false, t
 inline constexpr Channel kObstacles{"OBSTACLES", "obstacles_t", "georeferencer", 80, 160, false, true};
 inline constexpr Channel kTracks{"TRACKS", "tracks_t", "tracker", 80, 160, false, true};
 inline constexpr Channel kAlerts{"ALERTS", "alerts_t", "tracker", 22, 44, false, true};  // one a scan, and two a second where nobody looks
-// Both of page, plotter and others: whoever shows alerts. ALERTS say with which scan one was taken.
+// Published by the page, the plotter and other programs that show alerts. ALERTS say with which scan a message was used.
 inline constexpr Channel kAlertAck{"ALERT_ACK", "alert_ack_t", "several", 10, 40, true, true};
 inline constexpr Channel kOrders{"ORDERS", "order_t", "several", 2, 40, true, true};
 inline constexpr Channel kHealth{"HEALTH", "health_t", "all", 10, 40, false, false};

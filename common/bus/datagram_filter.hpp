@@ -1,4 +1,4 @@
-// What a socket of the bus takes, decided in the kernel before anybody reads it.
+// The datagrams that a socket of the bus accepts, decided in the kernel before anybody reads them.
 #pragma once
 
 #include <linux/filter.h>
@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kFragmentHeaderBytes = 20;
 inline constexpr std::uint32_t kMaxChannelCharacters = kMaxLogChannelBytes;
 inline constexpr std::uint32_t kMaxFragmentBytes = 65'487;
 
-/// Greatest message that is taken: what a log can hold, far above any of ours (kMaxMessageBytes).
+/// Greatest message that is accepted: what a log can hold, far above any of ours (kMaxMessageBytes).
 inline constexpr std::uint32_t kMaxForeignMessageBytes = kMaxLogDataBytes;
 
 struct DatagramPolicy {

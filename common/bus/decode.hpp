@@ -40,7 +40,7 @@ std::vector<std::uint8_t> Encode(const T& message) {
   return bytes;
 }
 
-/// What every message of package lookout begins with: 8 bytes each, big-endian.
+/// The first members of every message of package lookout: 8 bytes each, big-endian.
 struct MessageHeader {
   std::uint64_t fingerprint = 0;  // of the type
   std::int64_t utime_us = 0;

@@ -123,7 +123,7 @@ std::optional<std::int64_t> LcmBus::NumDatagramsDropped() const {
 
 std::string LcmBus::GuardFault() const { return implementation_->guard_fault; }
 
-// LCM starts its receiver when it is asked for the descriptor: who only sends would read the traffic of the whole bus, to throw it away.
+// LCM starts its receiver when it is asked for the descriptor: a program that only sends would read the traffic of the whole bus, to throw it away.
 int LcmBus::file_descriptor() const { return implementation_->subscriptions.empty() ? -1 : lcm_get_fileno(implementation_->lcm); }
 
 bool LcmBus::HandleOnce(std::chrono::milliseconds timeout) {

@@ -33,7 +33,7 @@ bool IsMulticastGroup(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 28) == 0xE;  // 224.0.0.0/4
 }
 
-// What is printed may come from the environment, and be of any length.
+// The printed text may come from the environment, and be of any length.
 std::string Shown(std::string_view text) {
   constexpr std::size_t kMaxShownLetters = 200;
   return Printable(text.substr(0, kMaxShownLetters));

@@ -1,4 +1,5 @@
-// The address of the bus, "udpm://239.255.76.67:7667?ttl=1": LCM takes what it does not understand for something else, so it is read strictly before.
+// The address of the bus, "udpm://239.255.76.67:7667?ttl=1". LCM takes an argument that it does not understand for another one, so the address is
+// read strictly before.
 #pragma once
 
 #include <optional>
@@ -12,8 +13,8 @@ struct MulticastAddress {
   int time_to_live = 0;  // 0 = this computer only
 };
 
-/// What is wrong with an address for a program that is one of several on a bus. LCM would go on with ttl=256 as 0, with an argument that it does not
-/// know as if it were not there, and with memq:// and file:// as if there were somebody to hear.
+/// The fault of an address, for a program that shares a bus with others. LCM would go on with ttl=256 as 0, ignore an argument that it does not know,
+/// and accept memq:// and file:// as if somebody listened there.
 ///
 /// @return a sentence with the address and what to write instead; empty when nothing is wrong
 std::string LcmUrlFault(const std::string& url);

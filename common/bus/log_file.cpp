@@ -20,7 +20,7 @@ namespace {
 
 // LCM channel names have at most 63 characters; its logs allow more. Data have no bound but that of their length, an i32.
 constexpr std::int64_t kMaxChannelBytes = 1000;
-// Read or written at once: system calls cost more than the copy. A scan's messages are larger: those that nobody wants are passed over.
+// Read or written at once: system calls cost more than the copy. A scan's messages are larger: unwanted ones are passed over.
 constexpr std::size_t kReadBytes = 64 * 1024;
 constexpr std::size_t kJumpBytes = 4 * 1024;
 constexpr std::size_t kWorthAJumpBytes = 16 * 1024;
@@ -46,11 +46,11 @@ struct LogReader::Implementation {
   int descriptor = -1;
   std::int64_t size_bytes = 0;
   std::int64_t position = 0;  // of the next event
-  // A stretch of the file: events follow each other, and what stands behind an event is looked at twice.
+  // A stretch of the file: events follow each other, and the bytes behind an event are looked at twice.
   std::vector<std::uint8_t> block;
   std::int64_t block_offset = 0;
   std::string channel;             // of the event that was given last
-  std::vector<std::uint8_t> kept;  // its beginning, where what follows it was passed over
+  std::vector<std::uint8_t> kept;  // its beginning, where the rest was passed over
   std::function<void()> on_search;
 
   // @param least_bytes  to be read if any are
@@ -92,7 +92,7 @@ struct LogReader::Implementation {
     const std::size_t size = head_size + static_cast<std::size_t>(data_size);
     const Bytes head = View(start, head_size);
     if (head.size() < head_size) return std::nullopt;
-    channel.assign(head.begin() + kLogEventHeaderBytes, head.end());  // what stands behind the event may be another stretch
+    channel.assign(head.begin() + kLogEventHeaderBytes, head.end());  // the bytes behind the event may be another stretch
     const std::size_t given_size = std::min({num_wanted(channel), static_cast<std::size_t>(data_size), kMaxLogDataBytes});
     const bool is_jump = size - head_size - given_size >= kWorthAJumpBytes;
     const bool is_whole_given = given_size > 0 && !is_jump;
@@ -250,7 +250,7 @@ void LogWriter::Append(Bytes bytes) {
 }
 
 void LogWriter::Flush() {
-  // What was not taken is not given again: the log is torn there.
+  // Bytes that were not taken are not given again: the log is torn there.
   auto block = std::exchange(block_, {});
   if (!block.empty()) take_(block);
   block.clear();

@@ -26,8 +26,8 @@ inline constexpr std::uint32_t kLogSyncWord = 0xEDA1DA01;
 /// LCM's own channels have at most 63 characters and never none: its reader stops at an event without name.
 inline constexpr std::size_t kMaxLogChannelBytes = 63;
 
-/// What is held of an event at a time, and what the recorder writes of one at most. A log of others may have larger events (a camera on the same
-/// bus), up to the 2 GB of LCM's format: of such an event the reader gives so much as its beginning, and the rest by ReadData.
+/// Greatest part of an event that is held at a time, and greatest event that the recorder writes. A log of others may have larger events (a camera on
+/// the same bus), up to the 2 GB of LCM's format: the reader gives so much of it as its beginning, and the rest by ReadData.
 inline constexpr std::size_t kMaxLogDataBytes = 16U * 1024 * 1024;
 
 struct LogEvent {
@@ -109,7 +109,7 @@ void AppendLogEventHead(std::vector<std::uint8_t>& log, std::int64_t number, Uti
 /// Makes the bytes of a log out of events.
 class LogWriter {
  public:
-  /// Takes a piece of the log, say into an io::OutputFile; what it throws comes through.
+  /// Takes a piece of the log, say into an io::OutputFile; its exceptions come through.
   using Take = std::function<void(Bytes)>;
 
   explicit LogWriter(Take take) : take_(std::move(take)) {}
@@ -121,7 +121,7 @@ class LogWriter {
   void WriteNumbered(std::int64_t number, Utime time, std::string_view channel, Bytes bytes, std::size_t num_data_bytes);
   void Append(Bytes bytes);
 
-  /// Hands on what was written: else the last of it stays behind.
+  /// Hands on the written bytes: else the last of them stay behind.
   void Flush();
 
   std::int64_t num_bytes() const { return num_bytes_; }

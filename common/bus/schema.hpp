@@ -1,4 +1,4 @@
-// Names and fingerprints of all wire types: what a log was written with.
+// Names and fingerprints of all wire types, as of the program that wrote a log.
 #pragma once
 
 #include <cstdint>

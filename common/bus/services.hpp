@@ -18,8 +18,8 @@ struct ServiceRow {
   std::string_view purpose;
   int watchdog_s;           // silence of the main loop after which systemd ends and restarts it; HEALTH feeds the watchdog once a second
   std::string_view needs;   // logs: writes to /var/lib/lookout; serial: opens serial ports; network: nothing else
-  std::string_view hangup;  // what SIGHUP (systemctl reload) does
-  std::string_view state;   // what it remembers from message to message, and loses when it restarts
+  std::string_view hangup;  // effect of SIGHUP (systemctl reload)
+  std::string_view state;   // remembered from message to message, and lost at a restart
   // nullptr: no more. The recorder reads every channel. HEALTH and RUN_INFO tell of processes, and are in no row.
   std::array<const Channel*, 16> inputs{};
   bool config_may_be_absent = false;  // <name>.txtpb: then it runs by its defaults
@@ -69,7 +69,7 @@ inline constexpr std::array kServices{
 
 constexpr bool Publishes(const ServiceRow& service, const Channel& channel) { return channel.publisher == service.role; }
 
-/// Who publishes the channel, for people: the service that fills the role, or the word of the channel table where none does.
+/// The publisher of a channel, for people: the service that fills the role, or the word of the channel table where none does.
 constexpr std::string_view PublisherName(const Channel& channel) {
   for (const auto& service : kServices) {
     if (Publishes(service, channel)) return service.name;

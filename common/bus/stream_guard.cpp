@@ -107,13 +107,13 @@ StreamGuard::Decision StreamGuard::Weigh(const StreamPlace& place, Time now, std
   const Fit in_other = other_ ? FitOf(*other_, place, now) : Fit::kNo;
   if (in_kept == Fit::kNo && in_other == Fit::kNo) {
     // Silent: the next one, at once.
-    return is_kept_alive || other_ ? TakeInNone(place, now, mark) : Keep(place, now, mark);
+    return is_kept_alive || other_ ? DecideInNone(place, now, mark) : Keep(place, now, mark);
   }
   if (in_kept == Fit::kLoss && in_other != Fit::kNo && num_held_ > 0 && IsOtherKeptGoingOn()) return Join(place, now);
   int nearer = static_cast<int>(in_kept) - static_cast<int>(in_other);
   if (nearer == 0) nearer = Nearer(place, now);
-  if (nearer > 0) return TakeInKept(place, now);
-  if (nearer < 0) return TakeInOther(place, now, mark);
+  if (nearer > 0) return DecideInKept(place, now);
+  if (nearer < 0) return DecideInOther(place, now, mark);
   // Whose it is, nothing tells. Both are followed; that both still speak shows by the second message with this number.
   const Time other_received = other_->received;
   Follow(*kept_, place, now);
@@ -124,8 +124,8 @@ StreamGuard::Decision StreamGuard::Weigh(const StreamPlace& place, Time now, std
   return {Held::kRefuse, Act::kRefuse, 0};
 }
 
-// Whether what is held goes on where the kept stream ended, by its numbers and times. So it is when a reader stood still, and more was lost than its
-// queue held: until some time has passed nothing explains the jump, and then each message fits in both.
+// Whether the held stream goes on where the kept stream ended, by its numbers. It does when a reader stood still and more was lost than its queue
+// held: nothing explains the jump at first, and then each message fits in both.
 bool StreamGuard::IsOtherKeptGoingOn() const {
   const double gap_us = GapUs(kept_->last, other_->first);
   if (other_->first.seq <= kept_->last.seq || gap_us < kQueueUs) return false;
@@ -212,14 +212,14 @@ bool StreamGuard::IsPlausibleLoss(const Stream& stream, const StreamPlace& place
   const auto number = static_cast<double>(distance);
   if (IsEven(stream)) {
     const double tolerance = (has_rising_times_ ? 0.25 : 0.5) + 0.25 * number;
-    // More time than messages: the stream paused, which shows in their receipt too. Else the clock is another computer's.
+    // More time than messages: the stream paused, and its receipt shows the pause too. Else the clock is another computer's.
     const bool has_time = measured_us <= (number + tolerance) * stream.period_us || measured_us <= kPause * received_us;
     return has_time && (number - tolerance) * stream.period_us <= gap_us;
   }
   return number <= MostWithin(gap_us);
 }
 
-// Of a message that follows in both: > 0 it is of the kept stream, < 0 of the other, 0 nothing tells.
+// Of a message that follows in both streams: > 0 it is of the kept one, < 0 of the held one, 0 undecided.
 int StreamGuard::Nearer(const StreamPlace& place, Time now) const {
   // Without a period: a program does not start again within so short a time.
   constexpr std::chrono::milliseconds kShortestRestart(300);
@@ -273,7 +273,7 @@ StreamGuard::Decision StreamGuard::Keep(const StreamPlace& place, Time now, std:
   return {};
 }
 
-StreamGuard::Decision StreamGuard::TakeInKept(const StreamPlace& place, Time now) {
+StreamGuard::Decision StreamGuard::DecideInKept(const StreamPlace& place, Time now) {
   Decision decision;
   decision.num_lost = Follow(*kept_, place, now);
   NoteTaken(place);
@@ -284,7 +284,7 @@ StreamGuard::Decision StreamGuard::TakeInKept(const StreamPlace& place, Time now
   return decision;
 }
 
-StreamGuard::Decision StreamGuard::TakeInOther(const StreamPlace& place, Time now, std::int64_t mark) {
+StreamGuard::Decision StreamGuard::DecideInOther(const StreamPlace& place, Time now, std::int64_t mark) {
   const auto num_lost = Follow(*other_, place, now);
   if (num_held_ == 0) {  // those before are refused already
     other_->first = place;
@@ -299,7 +299,7 @@ StreamGuard::Decision StreamGuard::TakeInOther(const StreamPlace& place, Time no
 }
 
 // A message that follows in neither stream.
-StreamGuard::Decision StreamGuard::TakeInNone(const StreamPlace& place, Time now, std::int64_t mark) {
+StreamGuard::Decision StreamGuard::DecideInNone(const StreamPlace& place, Time now, std::int64_t mark) {
   if (other_ && other_->num_steps > 1 && IsAlive(*other_, now)) {
     if (place.seq == other_->last.seq) other_->received = now;  // of two that nothing tells apart: both still speak
     NoteRefused(1, now, mark, now);
@@ -315,7 +315,7 @@ StreamGuard::Decision StreamGuard::TakeInNone(const StreamPlace& place, Time now
   return decision;
 }
 
-// One alone is a number gone wrong; two within the time that makes a silence are of somebody who speaks.
+// A single message is a wrong number; two within the time that makes a silence are a second publisher.
 void StreamGuard::NoteRefused(std::int64_t number, Time now, std::int64_t mark, Time began) {
   num_refused_ += number;
   const bool is_second = number > 1 || (last_refused_ && now - last_refused_->time < SilenceOf(*kept_));

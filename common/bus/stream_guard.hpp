@@ -1,4 +1,4 @@
-// Tells the messages of one publisher of a channel from those of a second one, by their numbers and times, and counts what is missing between them.
+// Tells the messages of one publisher of a channel from those of a second one, by their numbers and times, and counts missing messages.
 #pragma once
 
 #include <array>
@@ -56,10 +56,10 @@ constexpr bool HasRisingTimes(const Channel& channel) {
 }
 
 /// Keeps the stream first heard. A message that cannot follow in it is held: it belongs to a second publisher when the kept stream goes on, and to
-/// the same channel's next one (a restart) when the kept stream is silent for a second.
+/// the channel's next publisher (a restart) when the kept stream is silent for a second.
 ///
-/// What cannot be told apart: a second stream whose first message happens to have the very next number is taken for the first one, until that goes
-/// on. Two streams with equal numbers and equal times are told by their bytes: equal bytes are taken once, and of others neither is taken.
+/// Limits: a second stream whose first message happens to have the very next number counts as the first one, until the first goes on. Of two streams
+/// with equal numbers and equal times equal bytes are used once, and different bytes not at all.
 class StreamGuard {
  public:
   /// Receive time, by any clock that goes forward.
@@ -68,7 +68,7 @@ class StreamGuard {
   enum class Act { kTake, kHold, kRefuse };
   enum class Held { kStay, kTake, kRefuse };
 
-  /// What is to be done: first with the messages that are held, oldest first, then with this one.
+  /// The decision: first for the held messages, oldest first, then for this one.
   struct Decision {
     Held held = Held::kStay;
     Act act = Act::kTake;
@@ -144,9 +144,9 @@ class StreamGuard {
   static std::int64_t Follow(Stream& stream, const StreamPlace& place, Time now);
   static Stream Begin(const StreamPlace& place, Time now, std::int64_t mark);
   Decision Keep(const StreamPlace& place, Time now, std::int64_t mark);
-  Decision TakeInKept(const StreamPlace& place, Time now);
-  Decision TakeInOther(const StreamPlace& place, Time now, std::int64_t mark);
-  Decision TakeInNone(const StreamPlace& place, Time now, std::int64_t mark);
+  Decision DecideInKept(const StreamPlace& place, Time now);
+  Decision DecideInOther(const StreamPlace& place, Time now, std::int64_t mark);
+  Decision DecideInNone(const StreamPlace& place, Time now, std::int64_t mark);
   void NoteRefused(std::int64_t number, Time now, std::int64_t mark, Time began);
   bool WasTaken(const StreamPlace& place) const;
   void NoteTaken(const StreamPlace& place);

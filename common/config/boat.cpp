@@ -53,7 +53,7 @@ BoatRemark OwnBox(const BoatFacts& boat) {
   return remark;
 }
 
-// How far a place is outside of what is known of the hull, seen from above.
+// How far a place lies outside of the known hull, seen from above.
 double OutsideHullM(const BoatFacts& boat, const Eigen::Vector3d& p_vessel_m) {
   if (boat.hull_m) return std::max(std::abs(p_vessel_m.x()) - boat.hull_m->length_m, std::abs(p_vessel_m.y()) - boat.hull_m->beam_m);
   Eigen::Vector3d beside_m = p_vessel_m;

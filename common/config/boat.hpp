@@ -1,4 +1,4 @@
-// boat.txtpb as checked values, for the services that need facts of the boat; and what its numbers mean, in words for who stands on the boat.
+// boat.txtpb as checked values, for the services that need facts of the boat; and its numbers in words, for a person on the boat.
 #pragma once
 
 #include <filesystem>
@@ -41,7 +41,7 @@ BoatFacts LoadBoat(const std::filesystem::path& folder);
 
 struct BoatRemark {
   std::string words;
-  std::string cure;  // what to look at; empty where nothing is doubtful
+  std::string cure;  // advice; empty where nothing is doubtful
   bool is_under_water = false;
 };
 

@@ -22,7 +22,7 @@ std::string BoatFolderFault(const std::string& folder) {
     std::error_code no_right;
     if (fs::exists(entry->path() / kBoatFile, no_right)) boats.push_back(entry->path().lexically_normal().string());
   }
-  if (boats.empty()) return {};  // what reads it says which file is missing
+  if (boats.empty()) return {};  // the reader of the config says which file is missing
   std::ranges::sort(boats);
   constexpr std::size_t kMost = 20;
   const bool is_cut = boats.size() > kMost;

@@ -1,4 +1,4 @@
-// What --config is given: the folder of a boat, not one that holds several.
+// Checks the argument of --config: the folder of a boat, not one that holds several.
 #pragma once
 
 #include <string>

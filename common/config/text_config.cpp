@@ -54,7 +54,7 @@ constexpr std::size_t kMaxFaults = 100;
 struct GoneField {
   std::string_view message;
   std::string_view field;
-  std::string_view reason;  // and what to do
+  std::string_view reason;  // and the cure
 };
 constexpr std::array kGoneFields{
     GoneField{"lookout.config.Tracker", "map",
@@ -97,7 +97,7 @@ std::optional<double> NumberOf(const Message& message, const FieldDescriptor& fi
       return is_list ? reflection.GetRepeatedInt32(message, &field, index) : reflection.GetInt32(message, &field);
     case FieldDescriptor::CPPTYPE_INT64: {
       const auto value = is_list ? reflection.GetRepeatedInt64(message, &field, index) : reflection.GetInt64(message, &field);
-      return static_cast<double>(value);  // limits are round numbers: what rounds onto one is as good as it
+      return static_cast<double>(value);  // limits are round numbers: a value that rounds onto one is as good as it
     }
     default:
       return std::nullopt;
@@ -111,7 +111,7 @@ std::string RangeFault(const google::protobuf::FieldOptions& options, double val
   return "";
 }
 
-// Walks a parsed message and its positions in the text, and collects what the schema's options forbid.
+// Walks a parsed message and its positions in the text, and collects violations of the schema's options.
 class Checker {
  public:
   /// @param refused  fields whose values were wrong by themselves, by path and line of their message: they are set, but not here
@@ -152,7 +152,7 @@ class Checker {
   std::vector<TextFault>& faults_;
 };
 
-// What begins the files of editors that mark their coding; empty = none.
+// The first bytes of files whose editor marks their coding; empty = none.
 std::string ByteOrderMark(const std::string& text) {
   if (text.starts_with("\xEF\xBB\xBF"))
     return "begins with a byte order mark (EF BB BF): save it as UTF-8 without one (\"UTF-8\", not \"UTF-8 with BOM\")";
@@ -215,7 +215,7 @@ void ParseText(const std::string& text, const std::string& name, Message& messag
   auto positions = std::make_unique<TextFormat::ParseInfoTree>();
   bool is_parsed = parse(text, *positions);
   if (!is_parsed) {
-    // The parser stops at the first fault. What else is wrong is found without the statements that are wrong by themselves.
+    // The parser stops at the first fault. Further faults are found without the statements that are wrong by themselves.
     salvaged = SalvageText(text, *message.GetDescriptor());
     if (!salvaged.faults.empty()) {
       faults.clear();

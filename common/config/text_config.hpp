@@ -1,4 +1,4 @@
-// Strict reading of Protobuf text files: what is unknown, mistyped, missing, not finite or out of range stops the start.
+// Strict reading of Protobuf text files: a value that is unknown, mistyped, missing, not finite or out of range stops the start.
 #pragma once
 
 #include <filesystem>
@@ -54,8 +54,8 @@ inline constexpr std::size_t kMaxConfigBytes = 4UL * 1024 * 1024;  // the larges
 
 /// Fills `message` from a text file and checks it against the options of its schema (config/schema/options.proto).
 ///
-/// @throws ConfigError with every fault of the text, by line: unknown fields, wrong types, second values, facts that are missing, numbers out of
-///         range; `message` is then not to be used. Relations between fields are for who uses them.
+/// @throws ConfigError with every fault of the text, by line: unknown fields, wrong types, second values, missing facts, numbers out of range;
+/// `message` is then not to be used. The caller checks relations between fields.
 void LoadText(const std::filesystem::path& file, google::protobuf::Message& message);
 
 /// The same from text; `name` stands in for the path in faults.
@@ -69,7 +69,7 @@ Message Load(const std::filesystem::path& folder, const std::string& file_name) 
   return message;
 }
 
-/// @return values and defaults, a line each, in the order of the schema: what is in force
+/// @return values and defaults in force, a line each, in the order of the schema
 std::string EffectiveText(const google::protobuf::Message& message, const std::string& indent = "");
 
 /// @return EffectiveText of a file; x.txtpb has the schema config/schema/x.proto. @throws ConfigError

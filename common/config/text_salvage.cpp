@@ -47,7 +47,7 @@ std::vector<Piece> PiecesOf(const std::string& text) {
     if (text[i] == '\n') line_begins.push_back(i + 1);
   }
   google::protobuf::io::ArrayInputStream input(text.data(), static_cast<int>(text.size()));
-  FirstError unused;  // the statement that holds what the tokenizer refuses is parsed again
+  FirstError unused;  // the statement that the tokenizer refuses is parsed again
   Tokenizer tokenizer(&input, &unused);
   tokenizer.set_comment_style(Tokenizer::SH_COMMENT_STYLE);
   tokenizer.set_allow_f_after_float(true);
@@ -175,7 +175,7 @@ class Salvager {
     return "stands twice; the first is in line " + std::to_string(first->second + 1);
   }
 
-  // One behind the last piece of a statement that is no known message: a value, a list, a message that is not known, or what is no statement.
+  // One behind the last piece of an unknown statement: a value, a list, an unknown message, or no statement at all.
   std::size_t EndOf(std::size_t first, std::size_t value) const {
     const auto& piece = At(value);
     if (const auto closing = closing_of_.find(value); closing != closing_of_.end()) return closing->second + 1;
@@ -196,7 +196,7 @@ class Salvager {
     return end;
   }
 
-  // What the parser says to this statement alone. The line counts from the statement's.
+  // The parser's complaint about this statement alone. The line counts from the statement's.
   std::optional<std::pair<int, std::string>> ErrorOf(const Descriptor& descriptor, std::size_t first) const {
     const auto& begin = pieces_[first];
     const auto& last = pieces_[next_ - 1];

@@ -22,8 +22,8 @@ struct SalvagedText {
   std::set<std::pair<std::string, int>> blanked;
 };
 
-/// Parses each statement by itself: an unknown field, a value of a wrong type and a second value of a field are told for each, and blanked. What is
-/// no statement at all counts up to the end of its line. Cost: linear in the length of the text, times the depth of its messages (32 at most).
+/// Parses each statement by itself: an unknown field, a value of a wrong type and a second value of a field are told for each, and blanked. Text that
+/// is no statement counts up to the end of its line. Cost: linear in the length of the text, times the depth of its messages (32 at most).
 ///
 /// @param text    a text that Protobuf's parser refuses
 /// @param schema  of the whole text

@@ -1,4 +1,4 @@
-// Who belongs to whom: the cheapest pairing of two sets.
+// The cheapest pairing of two sets (Hungarian method).
 #pragma once
 
 #include <Eigen/Core>

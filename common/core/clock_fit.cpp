@@ -17,17 +17,17 @@ constexpr std::size_t kMaxBins = 60;
 constexpr std::size_t kMinBinsOfSlope = 10;
 // Long enough that some message came without delay, short enough to follow a host's clock that is being slewed (500 ppm) within 1 ms.
 constexpr microseconds kOffsetWindow = std::chrono::seconds(2);
-// What comes so much too early may be a bad stamp; not when it goes on.
+// A message that comes so much too early may have a bad stamp, but not a row of them.
 constexpr microseconds kMaxEarly = std::chrono::seconds(1);
 constexpr int kSamplesOfAStep = 3;
-// Minima of a second hardly differ. What is off by more is late, or a step of the host's clock.
+// Minima of a second hardly differ. A message that is off by more is late, or the host's clock was stepped.
 constexpr microseconds kMaxJitter = std::chrono::milliseconds(5);
 // The host's clock was set forward when so long nothing comes in time. A source that sends once a second is believed within five.
 constexpr microseconds kStepWindow = std::chrono::seconds(3);
 constexpr microseconds kLateBin = std::chrono::milliseconds(100);
 constexpr std::size_t kMaxLateBins = 100;
 constexpr int kMinLateInHalf = 2;
-// Of what comes at random times of a busy computer, from one to the next.
+// Spread of arrivals at random times of a busy computer, from one to the next.
 constexpr microseconds kMaxGrowth = std::chrono::milliseconds(500);
 constexpr int kMinSamples = 5;
 // A queue that drains more slowly than by 3 % of time passes for a step.
@@ -96,7 +96,7 @@ void ClockFit::OnTimely(const Sample& sample) {
 }
 
 void ClockFit::OnLate(const Sample& sample) {
-  // Later than what came before it: it waited in a stall of its own.
+  // Later than the message before it: it waited in a stall of its own.
   if (!late_.empty() && sample.host_minus_time > last_late_ + kMaxGrowth) late_.clear();
   last_late_ = sample.host_minus_time;
   if (late_.empty() || sample.host() - late_.back().host >= kLateBin) {

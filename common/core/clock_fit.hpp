@@ -34,7 +34,7 @@ class ClockFit {
 
   bool is_empty() const { return bins_.empty(); }
 
-  /// What came in time came by one offset for three seconds of both clocks: it is that of the clocks and not of a queue that is being drained.
+  /// Messages came in time by one offset for three seconds of both clocks: it is the offset of the clocks, not of a queue that is being drained.
   bool is_settled() const { return is_settled_; }
 
  private:
@@ -67,7 +67,7 @@ class ClockFit {
   std::chrono::microseconds last_late_{0};
   std::chrono::microseconds now_{0};
   std::optional<double> slope_;  // of host minus source over the source's time
-  int num_samples_ = 0;          // since the offset was found, at most what it takes to settle
+  int num_samples_ = 0;          // since the offset was found, at most as many as it takes to settle
   int num_early_ = 0;            // in a row that are impossibly early by far
   bool is_settled_ = false;
 };

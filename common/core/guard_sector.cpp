@@ -32,7 +32,7 @@ class NearestFinder {
   void AddEdge(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
     const Eigen::Vector2d along = to_m - from_m;
     if (along.squaredNorm() > 0.0) Add(from_m + std::clamp(-from_m.dot(along) / along.squaredNorm(), 0.0, 1.0) * along);
-    // Where the sector's sides cut the edge: the nearest point of what lies within may be there.
+    // Where the sector's sides cut the edge: the nearest point of the part inside may be there.
     for (const double side_rad : {bearing_.start_rad, bearing_.start_rad + bearing_.width_rad}) {
       const Eigen::Vector2d side = DirectionOf(side_rad);
       const double sine = Cross(side, along);

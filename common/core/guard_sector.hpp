@@ -1,4 +1,4 @@
-// The zone around the boat in which nothing may be, like the guard zone of a radar: a sector, and what of an outline is nearest in it.
+// The guard zone around the boat, as of a radar: a sector, and the nearest point of an outline in it.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,7 +12,7 @@ namespace lookout {
 struct GuardZoneParams {
   double range_m = 0.0;          // horizontal, from the vessel's origin; 0 = no alarm
   Sector bearing;                // of the sector, from the bow clockwise
-  bool takes_tentative = false;  // whether what is tentative, which may be spray, raises the alarm too
+  bool takes_tentative = false;  // whether tentative obstacles, which may be spray, raise the alarm too
 };
 
 /// Whether the whole zone lies within a box, seen from above. In the box around the own hull nothing can be seen that is not own boat.
@@ -33,7 +33,7 @@ inline void KeepNearer(std::optional<NearestPoint>& nearest, const std::optional
 ///
 /// @param corners_vessel_m  x forward, y port; of an outline or an open line
 /// @param is_closed         whether the last corner has an edge to the first
-/// @return nullopt when nothing of it lies within the sector. What surrounds the boat is as near as its edge
+/// @return nullopt when no part of the outline lies within the sector. An outline around the boat is as near as its edge
 std::optional<NearestPoint> NearestWithin(const Sector& bearing, std::span<const Eigen::Vector2d> corners_vessel_m, bool is_closed);
 
 }  // namespace lookout

@@ -1,4 +1,4 @@
-// What a service says of itself once a second; the shell adds rates, latency, cpu and memory and sends it as HEALTH.
+// State, reason and counters of a service, once a second; the shell adds rates, latency, cpu and memory and sends them as HEALTH.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ struct HealthReport {
   std::string reason;  // why it is not OK
   std::vector<Counter> counters;
 
-  /// One more reason why it is degraded. What has failed stays failed.
+  /// One more reason why it is degraded. A failed service stays failed.
   void Degrade(std::string_view why, std::string_view separator = "; ") {
     state = std::max(state, HealthState::kDegraded);
     if (!reason.empty()) reason += separator;

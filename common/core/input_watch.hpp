@@ -28,7 +28,7 @@ class InputWatch {
 
   /// Host time has come so far. Once a second or more.
   void AdvanceTo(Utime host_time) {
-    // A clock that was set forward, or a process that stood still, is no silence of the others.
+    // A clock that was set forward, or a stop of this process, is no silence of the inputs.
     constexpr std::chrono::seconds kLongestStep{10};
     if (now_ && seen_ && host_time - *now_ > kLongestStep) *seen_ += host_time - *now_;
     now_ = host_time;

@@ -14,7 +14,7 @@ using std::chrono::microseconds;
 
 constexpr std::int64_t kMicrosecondsPerSecond = 1'000'000;
 constexpr std::size_t kDigitsOfMicroseconds = 16;
-// A log is said to be of so many whole seconds, and what was measured is a little older than its event.
+// The length of a log is told in whole seconds, and a measurement is a little older than its event.
 constexpr std::chrono::seconds kSlack(1);
 
 // Digits only: no sign, no blank.
@@ -53,7 +53,7 @@ std::vector<std::string_view> Split(std::string_view text, char separator) {
   return parts;
 }
 
-// "1:30", "1:02:03.5": what stands behind the first colon is below 60. "12.5" alone may be any number.
+// "1:30", "1:02:03.5": each part behind the first colon is below 60. "12.5" alone may be any number.
 std::optional<microseconds> ParseClock(std::string_view text) {
   const auto parts = Split(text, ':');
   if (parts.size() > 3) return std::nullopt;
@@ -94,7 +94,7 @@ std::optional<std::chrono::sys_days> ParseDate(std::string_view text) {
   return date.ok() ? std::optional(std::chrono::sys_days(date)) : std::nullopt;
 }
 
-// What ends in Z.
+// A text that ends in Z.
 std::optional<GivenTime> ParseUtc(std::string_view text) {
   const auto behind_date = text.find('T');
   if (behind_date == std::string_view::npos) {
@@ -172,7 +172,7 @@ TimeInLog FindTime(std::string_view option, std::string_view text, const LogSpan
   } else {
     time = given->kind == GivenTime::Kind::kUtc ? Utime(given->value) : UtimeFromWire(ToUtimeUs(log.begin) + given->value.count());
   }
-  const bool goes_back = log.end < log.begin;  // the host's clock was set: who knows what lies outside
+  const bool goes_back = log.end < log.begin;  // the host's clock was set: nobody knows which times lie outside
   if (!time || (!goes_back && (*time < log.begin - kSlack || *time > log.end + kSlack))) {
     return {std::nullopt, Quoted(option, text) + ": lies outside of the log, which goes " + SpanText(log)};
   }

@@ -42,7 +42,7 @@ struct GivenTime {
 /// @return nullopt when it is none of them
 std::optional<GivenTime> ParseGivenTime(std::string_view text);
 
-/// What a log says of a given time.
+/// The answer of a log to a given time.
 struct TimeInLog {
   std::optional<Utime> time;  // nullopt: it is refused
   std::string fault;          // why, with the span of the log

@@ -18,7 +18,7 @@ bool DoCross(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m, const Eigen
   return Cross(ab_m, c_m - a_m) * Cross(ab_m, d_m - a_m) < 0.0 && Cross(cd_m, a_m - c_m) * Cross(cd_m, b_m - c_m) < 0.0;
 }
 
-// What lies within the four outermost places is no corner (Akl and Toussaint).
+// A place within the four outermost places is no corner (Akl and Toussaint).
 void DropInner(std::vector<Eigen::Vector2d>& places_m) {
   constexpr std::size_t kFew = 32;
   if (places_m.size() < kFew) return;

@@ -43,9 +43,9 @@ void Partition::Find(std::int32_t num_pieces, std::span<const EvidencePair> pair
   for (const EvidencePair& pair : pairs) {
     const auto index = static_cast<std::int32_t>(edges_.size());
     edges_.push_back({.group = {pair.one, pair.other}, .sum = pair.log_odds, .count = 1, .gap_m = pair.gap_m});
-    Hang(2 * index, pair.one);
-    Hang(2 * index + 1, pair.other);
-    Enter(index);
+    Attach(2 * index, pair.one);
+    Attach(2 * index + 1, pair.other);
+    InsertEdge(index);
     Push(index, threshold);
   }
   while (!heap_.empty()) {
@@ -77,15 +77,15 @@ void Partition::Merge(std::int32_t kept, std::int32_t gone, float threshold) {
     const std::int32_t index = end / 2;
     Edge& edge = edges_[At(index)];
     const std::int32_t neighbour = edge.group[At(1 - end % 2)];
-    Leave(index);
-    Take(end);
+    EraseEdge(index);
+    Detach(end);
     const std::int32_t same = neighbour == kept ? kNoEnd : edge_slot_[SlotOf(kept, neighbour)];
     if (neighbour != kept && same == kNoEnd) {
-      Hang(end, kept);
-      Enter(index);
+      Attach(end, kept);
+      InsertEdge(index);
       continue;  // its evidence is as it was
     }
-    Take(end ^ 1);
+    Detach(end ^ 1);
     edge.is_gone = true;
     if (same == kNoEnd) continue;
     Edge& into = edges_[At(same)];
@@ -97,7 +97,7 @@ void Partition::Merge(std::int32_t kept, std::int32_t gone, float threshold) {
   }
 }
 
-void Partition::Hang(std::int32_t end, std::int32_t group) {
+void Partition::Attach(std::int32_t end, std::int32_t group) {
   edges_[At(end / 2)].group[At(end % 2)] = group;
   ++num_ends_[At(group)];
   std::int32_t& any = any_end_[At(group)];
@@ -112,7 +112,7 @@ void Partition::Hang(std::int32_t end, std::int32_t group) {
   ends_[At(any)].last = end;
 }
 
-void Partition::Take(std::int32_t end) {
+void Partition::Detach(std::int32_t end) {
   const std::int32_t group = edges_[At(end / 2)].group[At(end % 2)];
   --num_ends_[At(group)];
   const auto [last, next] = ends_[At(end)];
@@ -138,13 +138,13 @@ std::size_t Partition::SlotOf(std::int32_t one, std::int32_t other) const {
   return slot;
 }
 
-void Partition::Enter(std::int32_t edge) {
+void Partition::InsertEdge(std::int32_t edge) {
   const auto [one, other] = edges_[At(edge)].group;
   edge_slot_[SlotOf(one, other)] = edge;
 }
 
-// What stands behind it and could stand nearer to its first slot moves up, so that no look-up ends too soon.
-void Partition::Leave(std::int32_t edge) {
+// An edge behind it that could stand nearer to its first slot moves up, so that no look-up ends too soon.
+void Partition::EraseEdge(std::int32_t edge) {
   const std::size_t mask = edge_slot_.size() - 1;
   const auto [one, other] = edges_[At(edge)].group;
   std::size_t hole = SlotOf(one, other);

@@ -17,7 +17,7 @@ struct EvidencePair {
   float gap_m = 0.0F;  // of equal evidence, the least gap comes first
 };
 
-/// What speaks for two groups to be one: the mean of the evidence of the pairs between them, or its sum.
+/// The evidence that two groups are one: the mean or the sum of the evidence of the pairs between them.
 enum class Linkage { kMean, kSum };
 
 /// Merges the two groups with the most evidence between them, again and again, while that is above a threshold. Pairs that are not given are no
@@ -60,13 +60,13 @@ class Partition {
   double EvidenceOf(const Edge& edge) const { return linkage_ == Linkage::kMean ? edge.sum / edge.count : edge.sum; }
   void Push(std::int32_t edge, float threshold);
   void Merge(std::int32_t kept, std::int32_t gone, float threshold);
-  void Hang(std::int32_t end, std::int32_t group);
-  void Take(std::int32_t end);
+  void Attach(std::int32_t end, std::int32_t group);
+  void Detach(std::int32_t end);
   // The edges by their groups.
   std::size_t FirstSlotOf(std::int32_t one, std::int32_t other) const;
   std::size_t SlotOf(std::int32_t one, std::int32_t other) const;
-  void Enter(std::int32_t edge);
-  void Leave(std::int32_t edge);
+  void InsertEdge(std::int32_t edge);
+  void EraseEdge(std::int32_t edge);
 
   Linkage linkage_;
   std::vector<Edge> edges_;

@@ -20,13 +20,13 @@ struct Datum {
   double longitude_deg = kNan;
   double ellipsoid_height_m = kNan;
 
-  /// The map frame; a height that is not known counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of distance.
+  /// The map frame; an unknown height counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of distance.
   LocalFrame Map() const;
   /// The same map frame, bit for bit. A datum that is not known equals none.
   bool IsSameAs(const Datum& other) const;
 };
 
-/// What of a pose places a point: where the vessel frame is in the map frame.
+/// The part of a pose that places a point: the vessel frame in the map frame.
 struct Place {
   bool is_placed = false;  // position and heading are known; else position_map_m and heading_rad are not to be used
   Eigen::Vector3d position_map_m = Eigen::Vector3d::Zero();
@@ -62,7 +62,7 @@ class PoseHistory {
 
   const Pose* newest() const { return poses_.empty() ? nullptr : &poses_.back(); }
 
-  /// The pose at `time`: that of the grid where there is one, else between its two neighbours, linear, heading the short way round.
+  /// The pose at `time`: the grid's where there is one, else between its two neighbours, linear, heading the short way round.
   ///
   /// @return nullopt when `time` is not between two poses at most kMaxBracket apart. It is placed when both neighbours are, in one datum.
   /// Cost: constant on an even grid; logarithmic in the length of the history where poses are missing.
@@ -77,7 +77,7 @@ class PoseHistory {
  private:
   // Index of the first pose at or after `time`; the number of poses when there is none.
   std::size_t FirstNotBefore(Utime time) const;
-  // The neighbours of a time and its share of the way between them; both are one where it is that of the grid.
+  // The neighbours of a time and its share of the way between them; both are one at a time of the grid.
   struct Bracket {
     const Pose& before;
     const Pose& after;

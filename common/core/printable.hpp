@@ -20,10 +20,8 @@ bool IsPrintableLine(std::string_view text);
 /// Of a name that people give to a thing (order_t).
 inline constexpr std::size_t kMostNameBytes = 40;
 
-/// @return whether it can be read and told from others: a printable line of at most kMostNameBytes, not empty, with something to see in it, and with
-/// no
-///         character that is invisible wherever it stands. Joiners and variation selectors, with which some scripts are written, are allowed beside
-///         what is seen.
+/// @return whether the text is a readable name: a printable line of 1 to kMostNameBytes bytes with a visible character and no character that is
+/// invisible wherever it stands. Joiners and variation selectors, with which some scripts are written, are allowed beside visible ones.
 bool IsName(std::string_view text);
 
 /// @return a text cell of comma separated values: as PrintableLines without the spaces, quoted where RFC 4180 wants it, and with an apostrophe before

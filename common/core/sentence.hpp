@@ -18,7 +18,7 @@ namespace lookout {
 enum class SentenceFault {
   kNone,
   kNoChecksum,   // no * in the line
-  kBadChecksum,  // what stands behind the * is not the exclusive or of what stands before, in two hexadecimal digits (and blanks)
+  kBadChecksum,  // the two hexadecimal digits behind the * are not the exclusive or of the characters before it
   kBadField,     // a field is missing or does not have its form
   kImplausible,  // a value is out of its range
 };

@@ -29,8 +29,8 @@ constexpr Utime OnTheDayNearest(Utime near, std::chrono::microseconds time_of_da
 /// GPS counts weeks in 10 bits: receivers of the first kind fall back by so much when the count rolls over.
 using WeekRollovers = std::chrono::duration<std::int64_t, std::ratio_multiply<std::chrono::weeks::period, std::ratio<1024>>>;
 
-/// @return `utc` and the whole number of rollovers that brings it within a day of `near`; `utc` itself where none does: then the fault may be that of
-///         the computer's clock
+/// @return `utc` and the whole number of rollovers that brings it within a day of `near`; `utc` itself where none does: then the computer's clock may
+/// be wrong
 constexpr Utime MendRollover(Utime utc, Utime near) {
   const Utime mended = utc + std::chrono::round<WeekRollovers>(near - utc);
   return std::chrono::abs(near - mended) <= std::chrono::days(1) ? mended : utc;

@@ -1,4 +1,4 @@
-// The part of a disk that all who write as long as they run leave free: reserve_bytes of recorder.txtpb.
+// The part of a disk that programs which write as they run leave free: reserve_bytes of recorder.txtpb.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ std::int64_t DiskBytes(const std::filesystem::path& path);
 /// Whether both are, or will be, on one file system.
 bool AreOnOneDisk(const std::filesystem::path& path, const std::filesystem::path& other);
 
-/// One rule for all that write on one disk. The recorder writes while no less than the reserve would be left; once it has stopped, it goes on where
-/// some more is free, else each byte that is freed would make one more small file. All others (the spool of the page) are worth less than a log: they
-/// leave as much as the recorder needs to go on, and what they hold is given back when somebody else fills the disk.
+/// One rule for all programs that write on one disk. The recorder writes while no less than the reserve would be left; once it has stopped, it goes
+/// on where some more is free, else each freed byte would make one more small file. All others (the spool of the page) are worth less than a log:
+/// they leave as much as the recorder needs to go on, and give their files back when another program fills the disk.
 class DiskReserve {
  public:
   explicit DiskReserve(std::int64_t reserve_bytes) : reserve_bytes_(reserve_bytes) {}
 
   std::int64_t bytes() const { return reserve_bytes_; }
-  /// That must be free before who has stopped goes on.
+  /// Free bytes that a stopped writer needs to go on.
   std::int64_t bytes_to_go_on() const { return reserve_bytes_ + reserve_bytes_ / kShareToGoOn + kMoreToGoOn; }
 
   /// How much another than the recorder may hold in all.
@@ -42,8 +42,8 @@ class DiskReserve {
   std::int64_t reserve_bytes_;
 };
 
-/// The reserve where `folder` is: that of the recorder on the disk of its logs; on another disk at most a tenth of it, so that a small one for the
-/// spool alone can be used.
+/// The reserve where `folder` is: the recorder's on the disk of its logs; on another disk at most a tenth of it, so that a small disk for the spool
+/// alone can be used.
 DiskReserve ReserveAt(const std::filesystem::path& folder, const std::optional<std::filesystem::path>& log_folder, std::int64_t reserve_bytes);
 
 }  // namespace lookout::io

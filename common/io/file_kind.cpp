@@ -26,7 +26,7 @@ struct Magic {
   FileKind kind;
 };
 
-// What a format begins with.
+// The first bytes of each format.
 constexpr std::array kMagics{Magic{"\xED\xA1\xDA\x01"sv, FileKind::kLcmLog},
                              // Microseconds and nanoseconds, in both byte orders; and one with more fields, which libpcap reads, too.
                              Magic{"\xA1\xB2\xC3\xD4"sv, FileKind::kPcap}, Magic{"\xD4\xC3\xB2\xA1"sv, FileKind::kPcap},
@@ -87,7 +87,7 @@ std::string Word(const std::filesystem::path& file) {
   return quoted + "'";
 }
 
-// The command that gives what a compressed file holds.
+// The command that unpacks a compressed file.
 std::string UnpackingOf(FileKind kind, const std::string& word) {
   switch (kind) {
     case FileKind::kGzip:
@@ -134,7 +134,7 @@ std::string_view NotOf(Wanted wanted) {
   return wanted == Wanted::kCapture ? ", no capture (pcap, pcapng)" : ", no capture, text log or lcm-log";
 }
 
-// What helps; empty where nothing that is known does.
+// The command that helps; empty where none is known.
 std::string HelpOf(const std::filesystem::path& file, FileKind kind, Wanted wanted) {
   const auto word = Word(file);
   const auto replay = "lookout-replay --config DIR --in " + word + " --out NEW.lcmlog";

@@ -1,4 +1,4 @@
-// What a file is, by what it is on the disk and by its first bytes: so that each program can say it, and name the command that helps.
+// The kind of a file, by its type on the disk and its first bytes, so that each program can say it and name the command that helps.
 #pragma once
 
 #include <filesystem>
@@ -30,38 +30,38 @@ enum class FileKind {
   kMcap,
   kSqlite,
   kUtf16,  // text
-  kNmea,   // text with what begins as a sentence of NMEA 0183 does
+  kNmea,   // text with a line that begins as a sentence of NMEA 0183 does
   kText,
   kUnknown,
 };
 
-/// Never waits: what is no regular file is not opened.
+/// Never waits: only a regular file is opened.
 FileKind FileKindOf(const std::filesystem::path& file);
 
 /// @param head  the first bytes of a regular file, 4096 of them where it has so many
 FileKind FileKindOfHead(Bytes head);
 
-/// What gzip packed, by its first bytes; kUnknown where nothing comes out.
+/// The kind of the content of a gzip file, by its first bytes; kUnknown where nothing comes out.
 FileKind PackedKindOf(const std::filesystem::path& file);
 
 /// "a capture (pcap)"
 std::string_view InWords(FileKind kind);
 
-/// What a program wants to read.
+/// The kind of file that a program wants to read.
 enum class Wanted {
   kLog,         // an lcm-log
   kCapture,     // pcap or pcapng, also packed by gzip
   kTextLog,     // of NMEA 0183
-  kDetections,  // what lookout-import reads: JSON
+  kDetections,  // input of lookout-import: JSON
   kRecording,   // any of these, or a text log
 };
 
-/// Why a file cannot be what is wanted, and the command that helps: "x.pcap: is a capture (pcap), no lcm-log. A log is made of it by: ..."
+/// Why a file cannot be of the wanted kind, and the command that helps: "x.pcap: is a capture (pcap), no lcm-log. A log is made of it by: ..."
 ///
-/// @return empty where it may be what is wanted. A log may also be kUnknown or kText (damaged at its beginning), or kEmpty (just begun)
+/// @return empty where it may be of the wanted kind. A log may also be kUnknown or kText (damaged at its beginning), or kEmpty (just begun)
 std::string WhyNot(const std::filesystem::path& file, Wanted wanted);
 
-/// What to say of a log in which no event was found: it is empty, or other than a log.
+/// The message for a log in which no event was found: it is empty, or other than a log.
 std::string NoEventText(const std::filesystem::path& file);
 
 }  // namespace lookout::io

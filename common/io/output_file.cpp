@@ -100,7 +100,7 @@ int RenameWithoutReplacing(const fs::path& from, const fs::path& to) {
 struct OutputFile::Implementation final : public std::streambuf {
   Implementation(fs::path name, OutputOptions some_options) : file(std::move(name)), options(std::move(some_options)), stream(this) {
     stream.imbue(std::locale::classic());
-    stream.exceptions(std::ios::badbit);  // what Write throws comes through
+    stream.exceptions(std::ios::badbit);  // exceptions of Write come through
     buffer.reserve(kBlockBytes);
     if (file.empty()) throw std::runtime_error("the name of the output is empty");
     if (!OpenDirectly()) OpenPartial();
@@ -111,7 +111,7 @@ struct OutputFile::Implementation final : public std::streambuf {
 
   ~Implementation() override {
     if (descriptor < 0) return;
-    if (!partial.empty() && !is_done) TakeAway();
+    if (!partial.empty() && !is_done) RemovePartial();
     close(descriptor);
   }
 
@@ -200,13 +200,13 @@ struct OutputFile::Implementation final : public std::streambuf {
       return false;
     }
     try {
-      CheckPlace();  // again: from here on nobody else who asks for the lock puts a file there
+      CheckPlace();  // again: from here on no other program that asks for the lock puts a file there
     } catch (const std::runtime_error&) {
       unlink(partial.c_str());
       close(made);
       throw;
     }
-    // What replaces a file is open to the same people. Some file systems know no modes.
+    // The new file is open to the same people as the replaced one. Some file systems know no modes.
     const auto replaced = StateOfName(file);
     if (replaced && S_ISREG(replaced->st_mode)) static_cast<void>(fchmod(made, replaced->st_mode & 0777));
     descriptor = made;
@@ -233,7 +233,7 @@ struct OutputFile::Implementation final : public std::streambuf {
     return "";
   }
 
-  void TakeAway() const {
+  void RemovePartial() const {
     if (!IsNameOf(partial, descriptor)) {
       Tell(file.string() + ": not written; " + partial.string() + " was taken away by somebody else");
     } else if (unlink(partial.c_str()) != 0) {

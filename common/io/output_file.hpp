@@ -27,15 +27,15 @@ struct OutputOptions {
 };
 
 /// The bytes go to FILE.partial beside the place of the file, locked against a second program that writes the same. Commit brings them to the disk
-/// and moves them to their place. What is no regular file (a device, a FIFO, /dev/stdout) is written directly. A FILE.partial that is there already
-/// is removed with `force` only.
+/// and moves them to their place. An output that is no regular file (a device, a FIFO, /dev/stdout) is written directly. An existing FILE.partial is
+/// removed with `force` only.
 class OutputFile {
  public:
   /// @throws std::runtime_error, with path and reason: the file exists and `force` is not set; it is a folder, or one of the inputs; its folder is
   ///         missing or cannot be written to; another program writes it now; a FILE.partial is there and `force` is not set
   explicit OutputFile(const std::filesystem::path& file, OutputOptions options = {});
 
-  /// What was not committed is removed, and a line says so.
+  /// An uncommitted file is removed, and a line says so.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -47,7 +47,7 @@ class OutputFile {
   /// The same as a stream, which throws what Write throws. The stream formats as the "C" locale does.
   std::ostream& stream();
 
-  /// Hands to the kernel what was written: who reads FILE.partial finds it. @throws as Write
+  /// Hands the written bytes to the kernel: a reader of FILE.partial finds them. @throws as Write
   void Flush();
 
   /// For a library that writes by itself. Nothing may be written by the above then.
@@ -72,14 +72,14 @@ class OutputFile {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Outputs that belong together: all are brought to the disk before the first gets its name. What cannot be moved to its place then is kept as by
-/// Commit, and the others get their names all the same. @throws as Commit
+/// Outputs that belong together: all are brought to the disk before the first gets its name. A file that cannot be moved to its place is then kept as
+/// by Commit, and the others get their names all the same. @throws as Commit
 void CommitAll(const std::vector<OutputFile*>& files);
 
 /// The regular files of a folder, for OutputOptions::inputs.
 std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& folder);
 
-/// What errno says.
+/// The text of errno.
 std::string ErrnoText();
 
 /// Whether a name is that of an open file. Symbolic links are not followed.

@@ -30,7 +30,7 @@ constexpr std::array<std::pair<int, speed_t>, 14> kSpeeds{{{1200, B1200},
                                                            {2000000, B2000000},
                                                            {4000000, B4000000}}};
 
-// @return what went wrong; empty = nothing
+// @return the fault; empty = none
 std::string MakeRaw(int descriptor, int baud) {
   const auto speed = std::ranges::find(kSpeeds, baud, &std::pair<int, speed_t>::first);
   if (speed == kSpeeds.end()) return std::to_string(baud) + " baud is none that serial ports have";

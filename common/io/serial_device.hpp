@@ -5,7 +5,7 @@
 
 namespace lookout::io {
 
-/// Opens it for this process alone. What waits there, in either direction, is dropped, as it is of unknown age.
+/// Opens it for this process alone. Waiting bytes, in either direction, are dropped, as they are of unknown age.
 ///
 /// @param device  "/dev/serial/by-id/..."
 /// @param baud    one that termios has a name for

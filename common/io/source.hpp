@@ -35,9 +35,9 @@ class Source {
   /// Readable while something waits; the same number for the life of the source; -1: there is none.
   virtual int file_descriptor() const { return -1; }
 
-  /// To be called every 5 to 10 ms: opens what is closed, follows an interface that goes and comes, each as far as it is time to.
+  /// Must be called every 5 to 10 ms: opens closed sockets and devices, follows an interface that goes and comes.
   ///
-  /// @return what changed since the last call, for the log; empty = nothing
+  /// @return changes since the last call, for the log; empty = none
   virtual std::string Poll(Utime now) = 0;
 
   /// Never waits.

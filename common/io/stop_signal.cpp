@@ -51,8 +51,8 @@ void Catch(int signal, void (*handler)(int)) {
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
 }
 
-// An output would get the number of a standard stream that is closed, and the program's own lines would be written into it. What is opened instead
-// lets input and output fail, as the closed one did; lines for people go nowhere.
+// An output would get the number of a standard stream that is closed, and the program's own lines would be written into it. The descriptor that is
+// opened instead lets input and output fail, as the closed one did; lines for people go nowhere.
 void OpenStandardStreams() {
   constexpr std::array<int, 3> kModes{O_WRONLY, O_RDONLY, O_WRONLY};
   for (int i = 0; i < static_cast<int>(kModes.size()); ++i) {

@@ -59,7 +59,7 @@ void TextFile::Seek(std::int64_t position) {
     next_ = 0;
     Begin();
   }
-  // What lies before the position is not kept on the way to it.
+  // Bytes before the position are not kept on the way to it.
   while (position > buffer_begin_ + static_cast<std::int64_t>(buffer_.size())) {
     next_ = buffer_.size();
     if (!Fill()) break;
@@ -67,7 +67,7 @@ void TextFile::Seek(std::int64_t position) {
   next_ = static_cast<std::size_t>(std::min(position - buffer_begin_, static_cast<std::int64_t>(buffer_.size())));
 }
 
-// Adds what comes next to the buffer, and drops what is not kept.
+// Adds the next bytes to the buffer, and drops those before the kept part.
 bool TextFile::Fill() {
   const std::size_t num_dropped = next_ > kKeptBytes ? next_ - kKeptBytes : 0;
   buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(num_dropped));

@@ -45,8 +45,8 @@ class TextFile {
 
   std::filesystem::path file_;
   UnpackedFile bytes_;
-  std::vector<std::uint8_t> buffer_;  // what was unpacked last
-  std::int64_t buffer_begin_ = 0;     // where it stands in what is unpacked
+  std::vector<std::uint8_t> buffer_;  // the last unpacked bytes
+  std::int64_t buffer_begin_ = 0;     // their place in the unpacked text
   std::size_t next_ = 0;              // in the buffer
   Coding coding_ = Coding::kBytes;
   std::int64_t mark_bytes_ = 0;

@@ -49,7 +49,7 @@ std::string ZoneOf(const std::string& address) {
   return zone.find_first_not_of("0123456789") == std::string::npos ? "" : zone;
 }
 
-// What helps, where the reason alone does not say it.
+// Advice, where the reason alone does not say it.
 std::string Remedy(int reason, const UdpOptions& options) {
   switch (reason) {
     case EADDRINUSE:
@@ -112,7 +112,7 @@ void JoinGroup(const OpenedSocket& opened, const UdpOptions& options, int family
   if (inet_pton(family, options.multicast_group.c_str(), address) != 1) {
     throw std::runtime_error(Where(options) + ": the multicast group is no numeric address of the same family");
   }
-  // Else the kernel hands on every group that any program of this computer has joined.
+  // Otherwise the kernel hands on every group that any program of this computer has joined.
   opened.Require(opened.Set(level, is_ipv4 ? IP_MULTICAST_ALL : IPV6_MULTICAST_ALL, 0), "multicast of this group alone");
   opened.Require(opened.Set(level, MCAST_JOIN_GROUP, request), "joining the multicast group");
 }

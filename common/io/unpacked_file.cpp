@@ -42,7 +42,7 @@ std::size_t UnpackedFile::Read(std::span<std::uint8_t> out) {
     const int outcome = gzread(file_.get(), out.data() + size_read, wanted);
     if (outcome > 0) size_read += static_cast<std::size_t>(outcome);
     if (outcome >= 0 && static_cast<unsigned int>(outcome) == wanted) continue;
-    // The end. What is packed may end too early: zlib tells that beside the bytes that came.
+    // The end. The packed file may end too early: zlib tells that beside the bytes that came.
     int code = Z_OK;
     const std::string reason = gzerror(file_.get(), &code);
     if (code == Z_BUF_ERROR) fault_ = "what gzip packed is cut short";

@@ -21,7 +21,7 @@ class UnpackedFile {
   /// @return how many bytes were read: fewer than `out` holds at the end and where the file is damaged
   std::size_t Read(std::span<std::uint8_t> out);
 
-  /// Why reading ended before the end: what is packed is cut or damaged, or the disk cannot be read. Empty: it did not.
+  /// Why reading ended before the end: the packed file is cut or damaged, or the disk cannot be read. Empty: it did not.
   const std::string& fault() const { return fault_; }
 
   /// Bytes of the file that were read, as it lies there.

@@ -1,4 +1,4 @@
-// Which alert of ALERTS sounds, for whoever shows alerts.
+// The alert of ALERTS that sounds, for programs that show alerts.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@ namespace lookout::messages {
 
 enum class AlertSound : std::uint8_t { kQuiet, kSounds, kSilenced };
 
-/// Silenced is an active warning that was one when silence began: it would sound otherwise.
+/// Silenced is an active warning that was one when silence began: without silence it would sound.
 /// @param alert  one of those of `alerts`
 inline AlertSound SoundOf(const alerts_t& alerts, const alert_t& alert) {
   constexpr std::int64_t kSilenceUs = std::chrono::microseconds(std::chrono::seconds(30)).count();  // order_t, SILENCE

@@ -1,5 +1,5 @@
-// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS, ALERTS, and of ALERT_ACK and ORDERS. A service computes from what
-// FaultOf accepts; a tool, which shows also what a service refuses, asks IsWellFormed.
+// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS, ALERTS, and of ALERT_ACK and ORDERS. A service uses messages without
+// FaultOf; a tool, which also shows messages that a service refuses, asks IsWellFormed.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ bool IsWellFormed(const segments_t& message);
 bool IsWellFormed(const obstacles_t& message);
 bool IsWellFormed(const tracks_t& message);
 
-/// What is wrong with a message: the name of the counter of its refusals.
+/// The fault of a message: the name of the counter of its refusals.
 using Fault = std::string_view;
 
 inline constexpr Fault kScanTime = "refused_time";             // utime out of bounds, or the end before the begin
@@ -46,11 +46,12 @@ inline constexpr Fault kSegmentsSize = "segments_refused_size";      // larger t
 inline constexpr std::array kSegmentsFaults{kSegmentsTime,   kSegmentsParts, kSegmentsCount, kSegmentsId,
                                             kSegmentsNumber, kSegmentsCode,  kSegmentsSize};
 
-inline constexpr Fault kObstaclesTime = "obstacles_refused_time";      // does not exist, lies outside of its scan, or the scan is longer than 60 s
-inline constexpr Fault kObstaclesParts = "obstacles_refused_parts";    // part_index, num_parts (above 2000), seq
-inline constexpr Fault kObstaclesCount = "obstacles_refused_count";    // counts that do not agree; no corner
-inline constexpr Fault kObstaclesId = "obstacles_refused_id";          // ids that do not increase
-inline constexpr Fault kObstaclesNumber = "obstacles_refused_number";  // what the status says is known is not, or is no place, share or probability
+inline constexpr Fault kObstaclesTime = "obstacles_refused_time";    // does not exist, lies outside of its scan, or the scan is longer than 60 s
+inline constexpr Fault kObstaclesParts = "obstacles_refused_parts";  // part_index, num_parts (above 2000), seq
+inline constexpr Fault kObstaclesCount = "obstacles_refused_count";  // counts that do not agree; no corner
+inline constexpr Fault kObstaclesId = "obstacles_refused_id";        // ids that do not increase
+inline constexpr Fault kObstaclesNumber =
+    "obstacles_refused_number";  // a value that the status says is known is not, or is no place, share or probability
 inline constexpr Fault kObstaclesCovariance = "obstacles_refused_covariance";  // not a covariance; one that is not known is none
 inline constexpr Fault kObstaclesCode = "obstacles_refused_code";              // a status, confidence, ground or kind that does not exist
 inline constexpr Fault kObstaclesSize = "obstacles_refused_size";              // larger than a message may be
@@ -75,7 +76,7 @@ inline constexpr int kMaxReturns = 2;
 inline constexpr int kMaxScanColumns = 65'536;
 inline constexpr std::int64_t kMaxScanCells = std::int64_t{1} << 21;
 
-/// Bounds of num_parts, so that who waits for parts needs no memory without end. A scan of kMaxScanCells takes less than 100 messages.
+/// Bounds of num_parts, so that waiting for parts needs bounded memory. A scan of kMaxScanCells takes less than 100 messages.
 inline constexpr std::int32_t kMaxParts = 1000;                    // LIDAR_SCAN, SEGMENTS, TRACKS
 inline constexpr std::int32_t kMaxObstaclesParts = 2 * kMaxParts;  // georeferencer makes at most two out of one of SEGMENTS
 
@@ -92,7 +93,7 @@ std::int32_t CountOf(const std::vector<T>& values) {
   return static_cast<std::int32_t>(values.size());
 }
 
-/// Whether two parts of one scan say the same of the whole of it.
+/// Whether two parts of one scan agree in the members of the whole scan.
 bool AgreeAboutScan(const lidar_scan_t& one, const lidar_scan_t& other);
 bool AgreeAboutScan(const segments_t& one, const segments_t& other);
 bool AgreeAboutScan(const obstacles_t& one, const obstacles_t& other);

@@ -10,16 +10,16 @@
 
 namespace lookout::messages {
 
-/// What is more than a number of parts has an overload of its own (checks.hpp).
+/// A message that holds more than a number of parts has an overload of its own (checks.hpp).
 template <typename Part>
 bool AgreeAboutScan(const Part& one, const Part& other) {
   return one.num_parts == other.num_parts;
 }
 
 /// Parts of one scan share utime_us and seq; they may come in any order. A part of another scan begins that scan and ends the one before. Nothing is
-/// kept of a scan that is whole, so that the same parts make the same scans at any time.
+/// kept of a complete scan, so that the same parts make the same scans at any time.
 ///
-/// @tparam Part  a message in parts, or what a process keeps of one: with utime_us, seq, part_index and num_parts
+/// @tparam Part  a message in parts, or the part of one that a process keeps: with utime_us, seq, part_index and num_parts
 template <typename Part>
 class PartAssembler {
  public:
@@ -29,7 +29,7 @@ class PartAssembler {
     std::int64_t inconsistent_parts = 0;  // refused: they disagree with the parts before about their scan
   };
 
-  /// What ended with a part, by part_index; both may be empty.
+  /// The scan that ended with a part, by part_index; both may be empty.
   struct Ended {
     std::vector<Part> incomplete;  // the scan before, which lacks parts
     std::vector<Part> whole;       // the scan that this part completes

@@ -11,7 +11,7 @@ namespace lookout::messages {
 
 namespace {
 
-// Bounds of what can be, wide enough for any boat, so that arithmetic inside stays far from overflow.
+// Bounds wide enough for any boat, so that arithmetic inside stays far from overflow.
 constexpr double kMaxMapM = 1.4e7;  // the earth's diameter, and more: a datum may be wrong
 constexpr double kMaxHeightM = 1e5;
 constexpr double kMaxHeaveM = 1e3;

@@ -12,7 +12,7 @@ namespace lookout::messages {
 
 inline constexpr Fault kPoseTime = "pose_refused_time";              // a time that does not exist, or is not on the grid
 inline constexpr Fault kPoseStatus = "pose_refused_status";          // a status that does not exist
-inline constexpr Fault kPoseNumber = "pose_refused_number";          // what the status says is known is not, or is not a place on earth
+inline constexpr Fault kPoseNumber = "pose_refused_number";          // a value that the status says is known is not, or is not a place on earth
 inline constexpr Fault kPoseCovariance = "pose_refused_covariance";  // not a covariance
 
 inline constexpr std::array kPoseFaults{kPoseTime, kPoseStatus, kPoseNumber, kPoseCovariance};

@@ -1,4 +1,4 @@
-// Brings together what the channels of a log say of one scan.
+// Brings together the messages of one scan from the channels of a log.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ class ScanCollector {
   using Handler = std::function<void(const ScanMessages&)>;
 
   /// @param is_complete  whether a scan waits for nothing more
-  /// @param order        kOfArrival: what came before a complete scan is handed on before it, complete or not
+  /// @param order        kOfArrival: scans that came before a complete scan are handed on before it, complete or not
   /// @param on_scan      called once with each scan: when it is complete, or more than `max_waiting` wait and it is the first, or at the end
   ScanCollector(Predicate is_complete, Order order, std::size_t max_waiting, Handler on_scan)
       : is_complete_(is_complete), order_(order), max_waiting_(max_waiting), on_scan_(std::move(on_scan)) {}
@@ -47,7 +47,7 @@ class ScanCollector {
   bool Add(obstacles_t message) { return Add(std::move(message), &ScanMessages::obstacles); }
   bool Add(tracks_t message) { return Add(std::move(message), &ScanMessages::tracks); }
 
-  /// End of the input: what waits is handed on.
+  /// End of the input: waiting scans are handed on.
   void Finish() {
     while (!waiting_.empty()) HandOn(0);
   }

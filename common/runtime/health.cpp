@@ -38,7 +38,7 @@ std::int64_t ResidentBytes() {
 // A process that waits for its first input is starting, not ill, for so long.
 constexpr std::chrono::seconds kStartTime(3);
 
-// HEALTH tells for so long what was lost.
+// For so long HEALTH tells of losses.
 constexpr std::chrono::seconds kLossTime(10);
 constexpr std::size_t kMostLosses = 3;  // channels that are named
 
@@ -115,7 +115,7 @@ std::string HealthReporter::LossText(std::chrono::steady_clock::time_point now, 
     if (num_lost > 0) losses.push_back({name, num_lost, counts.first - before.first + num_lost});
   }
   if (losses.empty()) return {};
-  // What costs most first: scans, then by share. All of them would hide other reasons.
+  // The costliest losses first: scans, then by share. All of them would hide other reasons.
   std::ranges::stable_sort(losses, {}, [](const Loss& loss) {
     return std::pair(!IsInParts(loss.name), -static_cast<double>(loss.num_lost) / static_cast<double>(loss.number));
   });

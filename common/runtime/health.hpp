@@ -24,7 +24,7 @@ class HealthReporter {
   /// @return the state of the process since the call before; removes the handling times from `bus`
   health_t Make(Utime now, const HealthReport& report, bus::Bus& bus);
 
-  /// @return the same with state, reason and counters of now; what is measured over an interval is that of the call of Make before
+  /// @return the same with state, reason and counters of now; rates and other values of an interval are those of the call of Make before
   health_t MakeBetween(Utime now, const HealthReport& report);
 
  private:
@@ -40,7 +40,7 @@ class HealthReporter {
   std::int64_t last_num_unsent_ = 0;
   std::int64_t last_num_refused_ = 0;             // of second publishers
   std::optional<std::int64_t> last_num_dropped_;  // datagrams, by the filter of the bus
-  // What came whole of each input and what did not, as of the last calls of Make.
+  // Scans of each input that came whole and that did not, as of the last calls of Make.
   struct Inputs {
     std::chrono::steady_clock::time_point time;
     std::map<std::string, std::pair<std::int64_t, std::int64_t>> whole_and_lost;
@@ -57,7 +57,7 @@ class HealthReporter {
 /// happens. There is no STOPPING=1: a process that starts itself anew (SIGHUP) would be ended by it.
 void NotifyReady();
 
-/// STATUS with state and reason of this HEALTH message, and WATCHDOG=1. To be called by the main loop only: what is fed anywhere else lives on when
+/// STATUS with state and reason of this HEALTH message, and WATCHDOG=1. Only the main loop may call it: a watchdog fed elsewhere is still fed when
 /// the loop hangs.
 void NotifyAlive(const health_t& health);
 

@@ -35,8 +35,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kHealthPeriod(1000);
 // How late messages that are held for a second publisher's sake may be handed out.
 constexpr std::chrono::milliseconds kReleasePeriod(100);
-// Memory that a burst took, as when a process stood still or a disk was slow, goes back to the system: a large block when it is freed (glibc would
-// raise the size from which it does so), what is left between small ones now and then. Else each process keeps its worst burst.
+// Memory of a burst, as when a process stood still or a disk was slow, goes back to the system: a large block when it is freed (glibc would raise the
+// size from which it does so), pages between small blocks now and then. Otherwise each process keeps its worst burst.
 constexpr int kLargeBlockBytes = 64 * 1024;
 constexpr std::chrono::seconds kTrimPeriod(10);
 // Messages handled before sockets and timers get their turn again.
@@ -51,8 +51,8 @@ sigset_t StopSignals() {
   return signals;
 }
 
-// At the end what has arrived is still handled, until nothing comes for a moment: those that feed this process may have ended just before it, and
-// what they sent last is on its way through a thread of LCM. Others may go on sending, so it is bounded.
+// At the end arrived messages are still handled, until nothing comes for a moment: the publishers may have ended just before this process, and their
+// last messages are on their way through a thread of LCM. Other publishers may go on, so it is bounded.
 constexpr std::chrono::milliseconds kLastSilence(20);
 constexpr std::chrono::milliseconds kLastTime(300);
 

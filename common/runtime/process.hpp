@@ -20,8 +20,8 @@ std::chrono::steady_clock::time_point SteadyNow();
 /// Name of this computer.
 std::string HostName();
 
-/// Blocks SIGINT, SIGTERM and SIGHUP: what comes from here on waits for Process::Run. First thing in main, so that one that comes
-/// early does not end the start.
+/// Blocks SIGINT, SIGTERM and SIGHUP: a signal from here on waits for Process::Run. Must be called first in main, so that an early signal does not
+/// end the start.
 void BlockStopSignals();
 
 class Process {
@@ -46,13 +46,14 @@ class Process {
   /// Calls `handler` on SIGHUP instead of ending Run. One that the kernel, or a shell, sends because the terminal is gone still ends it.
   void OnHangup(std::function<void()> handler);
 
-  /// Runs until SIGINT, SIGTERM, SIGHUP (unless it was ignored at the start: nohup) or Stop(). Sends HEALTH once a second with what `report` says,
-  /// and after each, under systemd, feeds its watchdog: a loop that turns and still makes its report is what there is to prove, as every input is
-  /// handled in it. At the end it still handles what has arrived, for 0.3 s at most.
-  /// @throws what a handler threw
+  /// Runs until SIGINT, SIGTERM, SIGHUP (unless it was ignored at the start: nohup) or Stop(). Sends HEALTH once a second with the result of
+  /// `report`, and after each, under systemd, feeds its watchdog: every input is handled in this loop, so a loop that makes its report is alive. At
+  /// the end it still handles arrived messages, for 0.3 s at most.
+  /// @throws exceptions of a handler
   void Run(const std::function<HealthReport()>& report);
 
-  /// Sends HEALTH after the timers of this round too: for what may be over before the next report. Rates, cpu, memory are those of the last second.
+  /// Sends HEALTH after the timers of this round too: for states that may be over before the next report. Rates, cpu, memory are those of the last
+  /// second.
   void ReportNow();
 
   /// Ends Run after the handler that calls it (end of a capture).
@@ -70,7 +71,7 @@ class Process {
 /// @param is_utc  whether times in the pattern are UTC, else local
 void SetLogPattern(const std::string& pattern, bool is_utc = false);
 
-/// Runs `body`, and turns what it throws into a line of the log and an exit code: 0 fine, 1 failed, 2 wrong config. Lines of the log carry `name`.
+/// Runs `body`, and turns its exceptions into a line of the log and an exit code: 0 fine, 1 failed, 2 wrong config. Lines of the log carry `name`.
 int RunMain(const std::string& name, const std::function<void()>& body);
 
 }  // namespace lookout::runtime

@@ -115,7 +115,7 @@ std::string EffectiveConfig(const std::filesystem::path& config_folder, std::vec
   config::FaultList faults;
   for (const auto& name : file_names) {
     faults.Try([&] { text += "# " + name + "\n" + config::EffectiveTextOfFile(config_folder / name); });
-    // Faults of more than one field are those of who uses the boat; here are words alone.
+    // The service checks relations between fields; here are words alone.
     config::FaultList untold;
     if (name == kBoatFile) untold.Try([&] { text += config::RemarksAsComments(config::LoadBoat(config_folder)); });
   }

@@ -1,4 +1,4 @@
-// What runs, with which values, on which computer: RUN_INFO, and --check.
+// The running program, its values and its computer: RUN_INFO, and --check.
 #pragma once
 
 #include <filesystem>
@@ -14,11 +14,11 @@ namespace lookout::runtime {
 /// @throws config::ConfigError
 run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& config_folder);
 
-/// What --check prints: the values in force of these files of the folder (empty = of every *.txtpb), each under its name.
+/// The output of --check: the values in force of these files of the folder (empty = of every *.txtpb), each under its name.
 std::string EffectiveConfig(const std::filesystem::path& config_folder, std::vector<std::string> file_names = {});
 
-/// Of the computer, for RUN_INFO. Lines "name: value": architecture, kernel, processor, its features by which C libraries choose variants of their
-/// functions, C library, GLIBC_TUNABLES, compiler. What cannot be read is "unknown".
+/// Facts of the computer, for RUN_INFO. Lines "name: value": architecture, kernel, processor, its features by which C libraries choose variants of
+/// their functions, C library, GLIBC_TUNABLES, compiler. A value that cannot be read is "unknown".
 std::string MachineText();
 
 /// The same of a given /proc/cpuinfo.

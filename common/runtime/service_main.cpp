@@ -32,7 +32,7 @@ struct Options {
   std::string lcm_url;                  // --lcm-url URL; else LCM_DEFAULT_URL, else LCM's default group on this computer
 };
 
-// --help and --version print and exit here, with 0. A wrong line prints what is wrong and exits with 2.
+// --help and --version print and exit here, with 0. A wrong line prints its fault and exits with 2.
 Options ParseOptions(int argc, char** argv, const std::string& program, const std::string& purpose) {
   Options options;
   std::string config_folder;
@@ -92,7 +92,8 @@ bool IsConfigRight(const ServiceProgram<AnyParams>& program, const std::filesyst
   return false;
 }
 
-// What libraries opened without O_CLOEXEC must not pile up from start to start. Where this cannot be it is no reason to end a look-out.
+// Descriptors that libraries opened without O_CLOEXEC must not pile up from start to start. Where they cannot be closed the look-out goes on all the
+// same.
 void CloseAllAtExecution() {
   constexpr int kFirstAfterStandardError = 3;
   constexpr unsigned int kLast = ~0U;

@@ -10,7 +10,7 @@
 
 namespace lookout::runtime {
 
-/// What a service does on SIGHUP, after it has checked the new config. A wrong one is logged, by file and line, and changes nothing.
+/// Behaviour of a service on SIGHUP, after it has checked the new config. A wrong config is logged, by file and line, and changes nothing.
 enum class Hangup {
   kNewRun,      // ends its run, and starts anew in place with the new config
   kKeepConfig,  // keeps the old config until its next start, and says so
@@ -23,8 +23,8 @@ struct ServiceProgram {
   Hangup hangup = Hangup::kKeepConfig;
   std::function<Params(const std::filesystem::path& config_folder)> load = {};  // throws ConfigError
   std::function<void(Process&, const Params&)> run = {};                        // may set another OnHangup
-  std::function<std::string(const Params&)> remarks = {};                       // what --check prints besides the values
-  // On SIGHUP: whether the sources of the next config can be opened beside those that run; throws std::runtime_error.
+  std::function<std::string(const Params&)> remarks = {};                       // words of --check besides the values
+  // On SIGHUP: throws std::runtime_error where the sources of the next config cannot be opened beside the running ones.
   std::function<void(const Params& next, const Params& running)> try_sources = {};
 };
 

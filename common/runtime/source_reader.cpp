@@ -32,7 +32,7 @@ Utime LiveReader::ReadOne(NamedSource& source) {
 }
 
 bool LiveReader::Read() {
-  const auto now = HostNow();  // what was stamped before it is read below
+  const auto now = HostNow();  // earlier bytes are read below
   Round round{now, now, now};
   for (auto& entry : sources_) {
     auto& source = *entry.source;

@@ -1,4 +1,4 @@
-// What a service reads besides the bus, as part of its main loop.
+// The sources that a service reads besides the bus, as part of its main loop.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@ class SourceReader {
 
   std::chrono::milliseconds period() const { return period_; }
 
-  /// To be called once per period: reads what waits or is due, for a bounded time, and passes it to the service.
+  /// Must be called once per period: reads waiting or due bytes, for a bounded time, and passes them to the service.
   ///
   /// @return false when all has been read, and nothing will follow
   virtual bool Read() = 0;
@@ -32,7 +32,7 @@ class SourceReader {
   /// Before the first Read(): sources that are to be read as soon as they are readable, too.
   virtual void WatchReadable(Process&) {}
 
-  /// Of the clock that stamps what is read: the computer's, or a recording's.
+  /// Time of the clock that stamps the bytes: the computer's, or a recording's.
   virtual Utime Now() const { return HostNow(); }
 
   virtual std::string fault() const = 0;

@@ -27,7 +27,7 @@ Bytes ToBytes(std::string_view text) { return {reinterpret_cast<const std::uint8
 std::uint16_t InstanceOf(std::uint32_t label) { return static_cast<std::uint16_t>(label >> 16); }
 
 std::uint8_t ToReflectivity(float intensity) {
-  if (!(intensity > 0.0F)) return 0;  // also what is not a number
+  if (!(intensity > 0.0F)) return 0;  // also NaN
   return static_cast<std::uint8_t>(std::lround(std::min(1.0F, intensity) * kReflectivityOfWhite));
 }
 

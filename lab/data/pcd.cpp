@@ -169,8 +169,8 @@ void SplitWords(std::string_view line, Words& words) {
   }
 }
 
-// The counts of the header are held against the size of the file, so what is made of them is never larger than a small multiple.
-// Source: "The PCD (Point Cloud Data) file format", pointclouds.org, version 0.7
+// The counts of the header are compared with the size of the file, so the arrays are never larger than a small multiple of it. Source: "The PCD
+// (Point Cloud Data) file format", pointclouds.org, version 0.7
 PcdHeader ParsePcdHeader(std::string_view bytes, const std::string& name) {
   static const std::vector<std::string_view> kKeys{"VERSION", "FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
   PcdHeader header;
@@ -256,7 +256,7 @@ class Collector {
     cloud_.points.reserve(header.num_points);
   }
 
-  /// @param number_of  gives the number of a field. @return what is wrong with the point; empty = nothing
+  /// @param number_of  gives the number of a field. @return the fault of the point; empty = none
   template <typename NumberOf>
   std::string Add(const NumberOf& number_of) {
     CloudPoint point{static_cast<float>(number_of(*x_)), static_cast<float>(number_of(*y_)), static_cast<float>(number_of(*z_)), 0, kNoTrueObject};

@@ -1,4 +1,4 @@
-// Points of a recording of others, with what it says they belong to.
+// Points of a recording of others, with their objects.
 #pragma once
 
 #include <cstdint>

@@ -126,7 +126,7 @@ void AddPoints(const std::vector<std::string>& files, MethodComparison& comparis
   }
 }
 
-// Lists and pictures of what went wrong, of all worlds.
+// Lists and pictures of failures, of all worlds.
 class Failures {
  public:
   explicit Failures(const ComparisonOptions& options) : options_(options), pictures_(options.num_worst) {
@@ -158,7 +158,7 @@ class Failures {
   WorstPictures pictures_;
 };
 
-// What becomes of the scans of one world: scores, and for a scan of each seed (the others look much like it) what the paper's image keeps.
+// The results of the scans of one world: scores, and for a scan of each seed (the others look much like it) the returns that the paper's image keeps.
 class World {
  public:
   World(const segmenter::Params& boat, const Methods& methods, ScoredScanHandler on_scored)
@@ -271,7 +271,7 @@ int CompareMethods(const ComparisonOptions& options) {
   });
   if (!options.left_out.empty()) {
     methods.insert(methods.begin(), std::make_unique<LeaveOutMethod>(boat, LeaveOutEvidence(options.weights_folder, LeftOutOf(options)), scenes));
-    if (!options.captures.empty()) LeftOutOfCaptures(options, boat);  // what is missing stops the run before it begins
+    if (!options.captures.empty()) LeftOutOfCaptures(options, boat);  // a missing file stops the run before it begins
   }
 
   io::CatchStopSignals();

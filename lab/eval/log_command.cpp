@@ -89,7 +89,7 @@ int EvaluateLog(const LogOptions& options) {
     const auto& channel = event->channel;
     const auto utime_us = match && IsOfAScan(channel) ? exporter::UtimeUsOf(event->bytes) : std::nullopt;
     if (utime_us && channel == bus::kObstacles.name) match->Count(*utime_us);
-    if (utime_us && !match->Holds(*utime_us)) continue;  // nobody knows what was there
+    if (utime_us && !match->Holds(*utime_us)) continue;  // the truth does not cover that time
     if (channel == bus::kObstacles.name || (truth && (channel == bus::kLidarScan.name || channel == bus::kSegments.name))) {
       is_taken = exporter::AddTo(collector, channel, event->bytes) == exporter::Taken::kOk;
     } else if (channel == bus::kLidarClock.name) {
@@ -106,7 +106,7 @@ int EvaluateLog(const LogOptions& options) {
         Take<pose_t>(*event, *match);
       }
     }
-    // What it cannot decode of the channels above is counted there.
+    // Messages of the channels above that do not decode are counted there.
     if (tracks && !tracks->Add(channel, event->bytes) && channel == kTracksChannel) is_taken = false;
     if (is_taken) continue;
     const auto* known = bus::FindChannel(channel);

@@ -12,7 +12,7 @@
 
 namespace lookout::eval {
 
-/// A sum and what it is of.
+/// A sum and the number of its terms.
 struct Mean {
   std::int64_t count = 0;
   double sum = 0.0;
@@ -28,7 +28,7 @@ struct Mean {
   bool operator==(const Mean&) const = default;
 };
 
-/// Adds counts, sums, what has an Add of its own, and arrays and maps of these.
+/// Adds counts, sums, types with an Add of their own, and arrays and maps of these.
 template <typename Sum>
 void AddMember(Sum& sum, const Sum& other) {
   if constexpr (std::is_arithmetic_v<Sum>) {

@@ -43,7 +43,7 @@ std::vector<float> ThresholdsOf(std::vector<float> values, int num_bins) {
   return thresholds;
 }
 
-// Rows as they are fitted: values as numbers of bins, bin k of a feature holding what is above its threshold k - 1 and not above threshold k.
+// Rows as they are fitted: values as numbers of bins, bin k of a feature holding values above its threshold k - 1 and not above threshold k.
 class Boosting {
  public:
   Boosting(const Rows& rows, const BoostingParams& params) : rows_(rows), params_(params), num_features_(rows.features.size()) {
@@ -141,7 +141,7 @@ class Boosting {
     for (std::size_t f = 0; f < num_features_; ++f) histogram[begin_of_feature_[f] + bins[f]] += slopes_[i];
   }
 
-  // What a leaf with the best value lowers the loss by, twice.
+  // The fall of the loss by a leaf with the best value, twice.
   double Gain(const Slope& slope) const {
     return slope.hessian < params_.min_leaf ? 0.0 : slope.gradient * slope.gradient / (slope.hessian + params_.l2);
   }
@@ -163,7 +163,7 @@ class Boosting {
         for (std::size_t k = 0; k < num_thresholds; ++k) {
           below += bins[k];
           const Slope above = all - below;
-          // What would go against the sign of the feature is one leaf.
+          // Leaves that would go against the sign of the feature are one leaf.
           const bool is_against = rows_.features[f].sign * (Value(above) - Value(below)) < 0.0;
           if (!is_against) gain[k] += Gain(below) + Gain(above) - Gain(all);
         }
@@ -177,7 +177,7 @@ class Boosting {
     return is_found ? best : Split{};
   }
 
-  // The rows above a threshold become leaves of their own. Histograms are summed over the fewer rows; what is left of their parent is the others'.
+  // The rows above a threshold become leaves of their own. Histograms are summed over the fewer rows; the rest of their parent's is the others'.
   void Divide(const Split& split, bool are_histograms_needed) {
     const auto num_leaves = histograms_.size();
     std::size_t num_above = 0;

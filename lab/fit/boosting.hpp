@@ -15,20 +15,20 @@ namespace lookout::fit {
 /// Chosen by leaving families out (README).
 struct BoostingParams {
   int num_trees = 100;
-  double shrinkage = 0.2;  // of what each tree would add by itself
+  double shrinkage = 0.2;  // of the step that each tree would make by itself
   double l2 = 5.0;         // in the unit of weights: kTotalWeight is all rows
   double min_leaf = 2.0;   // sum of weight x p (1 - p) in a leaf; leaves with less add nothing
   int num_bins = 64;       // thresholds of a feature are so many quantiles of its values
   /// Families whose rows are not fitted: trees are added up to where their loss is least. None, or without weight: all trees.
   std::vector<std::string> held_out = {};
-  /// Features that no split may ask for: what are they worth?
+  /// Features that no split may ask for, to see their worth.
   std::vector<std::string> dropped = {};
 };
 
 struct FittedSum {
   float bias = 0.0F;
   std::vector<segmenter::NamedTree> trees;
-  std::vector<double> gain;           // [features] what the splits of each lowered the loss by; their sum is 1
+  std::vector<double> gain;           // [features] share of the fall of the loss by the splits of each; their sum is 1
   std::vector<double> held_out_loss;  // [trees] per weight, after each; empty where no family is held out
 
   segmenter::NamedSum Named(std::string_view name, std::span<const std::string_view> features) const { return {name, features, bias, trees}; }
@@ -42,8 +42,8 @@ struct FittedSum {
 FittedSum Fit(const Rows& rows, const BoostingParams& params);
 
 /// Platt's scaling (J. Platt, "Probabilistic Outputs for Support Vector Machines", 1999): factor and offset with which log odds of rows that were not
-/// fitted on say best what is true of them. {1, 0} where all rows or all log odds are alike (there was nothing to fit the others on), and where the
-/// best factor would turn more into less.
+/// fitted on fit the truth best. {1, 0} where all rows or all log odds are alike (there was nothing to fit the others on), and where the best factor
+/// would turn more into less.
 struct Calibration {
   double factor = 1.0;
   double offset = 0.0;
@@ -58,7 +58,7 @@ float Rounded(double value);
 
 /// How well a sum tells rows.
 struct Score {
-  double loss = 0.0;        // mean of -ln(probability of what is true), in the balance of the weights
+  double loss = 0.0;        // mean of -ln(probability of the true answer), in the balance of the weights
   double auc = 0.0;         // probability that a true row has higher log odds than one that is not; NaN where all are the same
   double true_share = 0.0;  // of the weight
   std::size_t num_rows = 0;

@@ -34,7 +34,7 @@ eval::RunPlan PlanOf(const Options& options) {
   return plan;
 }
 
-// A name that is wrong must not make a fit on what it should leave out.
+// A wrong name must not make a fit on a family that it should leave out.
 void CheckFamilies(const std::string& option, const std::vector<std::string>& names, const eval::RunPlan& plan) {
   for (const auto& name : names) {
     const bool is_there = std::ranges::any_of(plan.scenes, [&](const auto& scene) { return eval::SceneLabel(scene) == name; });

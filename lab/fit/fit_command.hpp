@@ -24,7 +24,7 @@ struct Options {
 };
 
 /// @return the exit code
-/// @throws config::ConfigError, std::invalid_argument for what the user must correct; std::runtime_error
+/// @throws config::ConfigError, std::invalid_argument for mistakes of the user; std::runtime_error
 int FitScenes(const Options& options);
 
 }  // namespace lookout::fit

@@ -16,7 +16,7 @@ segmenter::Evidence ToEvidence(const SumReport& report) {
   return {report.fitted.Named(layout.name, layout.features), layout};
 }
 
-// Log odds of a segment must be right on waters that nothing was fitted on: each third of the families is judged by what is fitted on the others.
+// Log odds of a segment must be right on waters that nothing was fitted on: a sum fitted on two thirds of the families judges the other third.
 Calibration CalibrationByFamilies(std::size_t sum, const Rows& rows, const BoostingParams& boosting) {
   constexpr std::size_t kNumParts = 3;
   const auto& layout = segmenter::kEvidenceLayouts.at(sum);

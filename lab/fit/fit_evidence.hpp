@@ -34,11 +34,11 @@ struct FittedEvidence {
   segmenter::Params In(segmenter::Params params) const;
 };
 
-/// Fits the sums one after the other, each on what the method makes of the scans with those before it.
+/// Fits the sums one after the other, each on the rows that the method makes of the scans with those before it.
 ///
 /// @param params   of the segmenter; its evidence is not looked at
 /// @param without  families whose scans are not fitted on
-/// @param tell     what is being done, for people
+/// @param tell     progress, for people
 /// The same scans give the same evidence. Cost: six times that of the method, and that of five fits.
 FittedEvidence FitEvidence(std::span<const TrainingScan> scans, const segmenter::Params& params, const BoostingParams& boosting,
                            const std::set<std::string>& without, const std::function<void(const std::string&)>& tell);

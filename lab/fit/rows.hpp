@@ -1,4 +1,4 @@
-// What a sum is fitted on: rows of features with what is true of each.
+// The rows on which a sum is fitted: features with the truth of each.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ struct Rows {
 void BalanceWeights(Rows& rows);
 
 /// The same weight for each row, and ten times kTotalWeight for all. For probabilities: each segment counts once, as it does on the boat. Ten times,
-/// as most rows are single drops, and what is left must still reach leaves of its own.
+/// as most rows are single drops, and the rest must still reach leaves of its own.
 void WeighAlike(Rows& rows);
 
 /// Regularisation is in these units: a fit does not change when there are more scans of the same.

@@ -28,7 +28,7 @@ std::span<const Sign> SignsOf(std::size_t sum) {
   return kThingSigns;
 }
 
-// What stands on the ground and is no land: a row of posts or a floating deck may be either.
+// Objects that stand on the ground and are no land: a row of posts or a floating deck may be either.
 bool IsDock(const data::ScanObject& object) { return !object.is_in_water && !eval::IsLand(object); }
 
 std::int32_t FamilyNumber(const std::string& family, Rows& rows) {

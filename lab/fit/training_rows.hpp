@@ -1,4 +1,4 @@
-// From scans with their truth to rows: what the lookout method asks between its steps, and what would have been the right answer.
+// From scans with their truth to rows: the questions of the lookout method between its steps, and their right answers.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct TrainingScan {
 /// that the method does not have
 std::vector<Feature> FeaturesOf(std::size_t sum);
 
-/// What a group is in truth: the object that most of its returns are of.
+/// The true object of a group: the one that most of its returns are of.
 struct PieceTruth {
   std::int32_t object = data::kNoTrueObject;  // clutter and the own vessel: kNoTrueObject
   std::int32_t num_returns = 0;

@@ -52,7 +52,7 @@ void Birds::MoveTo(double time_s, const Vector2d& eye_m) {
   }
 }
 
-std::optional<Echo> Birds::Meet(const Ray& ray, double max_range_m) const {
+std::optional<Echo> Birds::FirstEcho(const Ray& ray, double max_range_m) const {
   std::optional<Echo> echo;
   for (const Bird& bird : birds_) {
     const Vector3d to_m = bird.p_map_m - ray.origin_m;

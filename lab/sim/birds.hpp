@@ -19,7 +19,7 @@ class Birds {
   void MoveTo(double time_s, const Eigen::Vector2d& eye_m);
 
   /// @return what the ray meets before `max_range_m`
-  std::optional<Echo> Meet(const Ray& ray, double max_range_m) const;
+  std::optional<Echo> FirstEcho(const Ray& ray, double max_range_m) const;
 
   static constexpr double kReachM = 50.0;
 

@@ -84,7 +84,7 @@ void Breakers::MoveTo(double time_s, const Vector2d& eye_m) {
 }
 
 // Seen from above an arc is a parabola over its crest: ahead = bend (1 - (along / half length)^2).
-std::optional<Echo> Breakers::Meet(const Ray& ray, double max_range_m) {
+std::optional<Echo> Breakers::FirstEcho(const Ray& ray, double max_range_m) {
   // Level beams and those that rise are over all of them.
   if (breakers_.empty() || (ray.direction.z() >= 0.0 && ray.origin_m.z() > sea_.max_height_m() + kGreatestHeightM)) return std::nullopt;
   double nearest_m = max_range_m;

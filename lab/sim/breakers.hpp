@@ -22,7 +22,7 @@ class Breakers {
   void MoveTo(double time_s, const Eigen::Vector2d& eye_m);
 
   /// The first breaker on the way of a ray before `max_range_m`; nullopt also where its foam lets the beam through.
-  std::optional<Echo> Meet(const Ray& ray, double max_range_m);
+  std::optional<Echo> FirstEcho(const Ray& ray, double max_range_m);
 
   /// @return share of foam on the water at a place, 0 to 1
   double FoamAt(const Eigen::Vector2d& p_map_m) const;

@@ -57,30 +57,30 @@ void MakeNavigationBuoy(const Size& size, Model& model) {
   double top_m = 0.0;
   Vector3d head_m = Vector3d::Zero();
   if (form == 0) {  // can, with or without a broader float
-    width_m = model.Given(size.width_m, 0.4, 2.0);
-    top_m = model.Given(size.height_m, 0.7 * width_m, 1.7 * width_m);
+    width_m = model.GivenOrDrawn(size.width_m, 0.4, 2.0);
+    top_m = model.GivenOrDrawn(size.height_m, 0.7 * width_m, 1.7 * width_m);
     model.Add(Cylinder{middle_m, width_m / 2.0, -0.2, top_m}, paint);
     if (model.Chance(0.4)) model.Add(Cylinder{middle_m, 0.75 * width_m, -0.2, 0.25 * top_m}, paint);
   } else if (form == 1) {  // cone on a drum
-    width_m = model.Given(size.width_m, 0.4, 2.0);
-    top_m = model.Given(size.height_m, 0.8 * width_m, 1.8 * width_m);
+    width_m = model.GivenOrDrawn(size.width_m, 0.4, 2.0);
+    top_m = model.GivenOrDrawn(size.height_m, 0.8 * width_m, 1.8 * width_m);
     const double drum_m = top_m * model.Between(0.1, 0.4);
     model.Add(Cylinder{middle_m, width_m / 2.0, -0.2, drum_m}, paint);
     model.Add(Cone{middle_m, width_m / 2.0, model.Between(0.0, 0.15) * width_m, drum_m, top_m}, paint);
   } else if (form == 2) {  // ball
-    width_m = model.Given(size.width_m, 0.4, 2.2);
-    top_m = model.Given(size.height_m, 0.6 * width_m, 0.85 * width_m);
+    width_m = model.GivenOrDrawn(size.width_m, 0.4, 2.2);
+    top_m = model.GivenOrDrawn(size.height_m, 0.6 * width_m, 0.85 * width_m);
     model.Add(Ellipsoid{{0.0, 0.0, top_m - width_m / 2.0}, Vector3d::Constant(width_m / 2.0)}, paint);
   } else if (form == 3) {  // spar, leaning
-    width_m = model.Given(size.width_m, 0.08, 0.4);
-    top_m = model.Given(size.height_m, 1.0, 4.0);
+    width_m = model.GivenOrDrawn(size.width_m, 0.08, 0.4);
+    top_m = model.GivenOrDrawn(size.height_m, 1.0, 4.0);
     const double lean_rad = DegToRad(model.Between(0.0, 15.0));
     head_m.x() = top_m * std::tan(lean_rad);
     model.Rod({0.0, 0.0, -0.5}, {head_m.x(), 0.0, top_m}, width_m / 2.0, paint);
     if (model.Chance(0.5)) model.Add(Ellipsoid{{0.0, 0.0, 0.1}, {1.8 * width_m, 1.8 * width_m, 0.25}}, model.Paint());
   } else {  // light buoy
-    width_m = model.Given(size.width_m, 1.2, 3.0);
-    top_m = model.Given(size.height_m, 2.0, 5.0);
+    width_m = model.GivenOrDrawn(size.width_m, 1.2, 3.0);
+    top_m = model.GivenOrDrawn(size.height_m, 2.0, 5.0);
     const double float_m = model.Between(0.2, 0.6);
     model.Add(Cylinder{middle_m, width_m / 2.0, -0.3, float_m}, paint);
     if (model.Chance(0.7)) {
@@ -104,8 +104,8 @@ void MakeNavigationBuoy(const Size& size, Model& model) {
 
 // Net floats, pots' floats, mooring balls, bottles and fenders at a line: 0.15 to 0.8 m, barely out of the water; some with a flag on a stick.
 void MakeFloat(const Size& size, Model& model) {
-  const double width_m = model.Given(size.width_m, 0.15, 0.8);
-  const double top_m = model.Given(size.height_m, 0.5 * width_m, 0.9 * width_m);
+  const double width_m = model.GivenOrDrawn(size.width_m, 0.15, 0.8);
+  const double top_m = model.GivenOrDrawn(size.height_m, 0.5 * width_m, 0.9 * width_m);
   const Material paint = model.Paint(size.reflectance);
   const double share = model.Between(0.0, 1.0);
   if (share < 0.6) {
@@ -127,8 +127,8 @@ void MakeFloat(const Size& size, Model& model) {
 
 // Inflated marks of a course: cylinders, cones, tetrahedra, balls; 0.8 to 2.2 m.
 void MakeRaceMark(const Size& size, Model& model) {
-  const double width_m = model.Given(size.width_m, 0.6, 1.6);
-  const double top_m = model.Given(size.height_m, 0.8, 2.2);
+  const double width_m = model.GivenOrDrawn(size.width_m, 0.6, 1.6);
+  const double top_m = model.GivenOrDrawn(size.height_m, 0.8, 2.2);
   const Material cloth = model.Paint(size.reflectance);
   const Vector2d middle_m = Vector2d::Zero();
   const int form = model.Whole(0, 3);
@@ -152,8 +152,8 @@ void MakeRaceMark(const Size& size, Model& model) {
 
 // Stakes, perches with twigs, piles in groups, boards on a pile; they stand on the ground and some lean.
 void MakeStake(const Size& size, Model& model) {
-  const double top_m = model.Given(size.height_m, 0.5, 4.5);
-  const double radius_m = model.Given(size.width_m, 0.05, 0.4) / 2.0;
+  const double top_m = model.GivenOrDrawn(size.height_m, 0.5, 4.5);
+  const double radius_m = model.GivenOrDrawn(size.width_m, 0.05, 0.4) / 2.0;
   const Material wood = model.Paint(size.reflectance);
   const double lean = model.Chance(0.6) ? model.Between(0.0, 0.2) : 0.0;
   const int num_piles = model.Chance(0.2) ? 3 : 1;
@@ -181,7 +181,7 @@ void MakeStake(const Size& size, Model& model) {
 
 // A ring of tubes with a handrail on posts and a net over it; some in a group of smaller floats. 4 to 16 m.
 void MakeFishFarm(const Size& size, Model& model) {
-  const double width_m = model.Given(size.width_m, 4.0, 16.0);
+  const double width_m = model.GivenOrDrawn(size.width_m, 4.0, 16.0);
   const double radius_m = width_m / 2.0;
   const double tube_m = model.Between(0.08, 0.2);
   const double rail_m = model.Chance(0.75) ? model.Between(0.6, 1.1) : 0.0;
@@ -205,8 +205,8 @@ void MakeFishFarm(const Size& size, Model& model) {
 
 // Trunks and planks adrift, with a branch or two; most of them under water.
 void MakeLog(const Size& size, Model& model) {
-  const double length_m = model.Given(size.length_m, 0.8, 8.0);
-  const double width_m = model.Given(size.width_m, 0.12, 0.6);
+  const double length_m = model.GivenOrDrawn(size.length_m, 0.8, 8.0);
+  const double width_m = model.GivenOrDrawn(size.width_m, 0.12, 0.6);
   const Material bark{model.Paint(size.reflectance > 0.0 ? size.reflectance : 0.12)};
   const double radius_m = width_m / 2.0;
   const double out_m = width_m * model.Between(0.15, 0.6);  // above the water
@@ -224,7 +224,7 @@ void MakeLog(const Size& size, Model& model) {
 
 // Ducks to swans: a body, and a head on a neck.
 void MakeWaterBird(const Size& size, Model& model) {
-  const double length_m = model.Given(size.length_m, 0.3, 1.3);
+  const double length_m = model.GivenOrDrawn(size.length_m, 0.3, 1.3);
   const Material feathers = model.Paint(size.reflectance);
   model.Add(Ellipsoid{{0.0, 0.0, 0.14 * length_m}, {0.5 * length_m, 0.24 * length_m, 0.2 * length_m}}, feathers);
   const double neck_m = length_m * model.Between(0.35, 0.7);

@@ -146,7 +146,7 @@ std::optional<double> Clouds::FogRange(const Ray& ray_map, double max_range_m) {
   return range_m;
 }
 
-std::optional<Echo> Clouds::Meet(const Ray& ray_map, const Ray& ray_vessel, double max_range_m) {
+std::optional<Echo> Clouds::FirstEcho(const Ray& ray_map, const Ray& ray_vessel, double max_range_m) {
   if (is_off_) return std::nullopt;
   std::optional<Echo> echo;
   const auto consider = [&](std::optional<double> range_m, double reflectance, ReturnReason reason) {

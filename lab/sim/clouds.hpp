@@ -21,7 +21,7 @@ class Clouds {
   void MoveTo(double time_s);
 
   /// What the first drop on the way gives, the same ray in the map and in the vessel frame. Drops are seen at any incidence.
-  std::optional<Echo> Meet(const Ray& ray_map, const Ray& ray_vessel, double max_range_m);
+  std::optional<Echo> FirstEcho(const Ray& ray_map, const Ray& ray_vessel, double max_range_m);
 
  private:
   struct Cloud {  // an ellipsoid

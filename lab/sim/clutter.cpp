@@ -202,8 +202,8 @@ std::optional<Echo> Clutter::FromWater(const Ray& ray, double max_range_m) {
 }
 
 std::optional<Echo> Clutter::FromBreakersAndBirds(const Ray& ray, double max_range_m) {
-  const auto bird = birds_.Meet(ray, max_range_m);
-  const auto breaker = breakers_.Meet(ray, bird ? bird->hit.range_m : max_range_m);
+  const auto bird = birds_.FirstEcho(ray, max_range_m);
+  const auto breaker = breakers_.FirstEcho(ray, bird ? bird->hit.range_m : max_range_m);
   return breaker ? breaker : bird;
 }
 

@@ -42,7 +42,9 @@ class Clutter {
   std::optional<Echo> FromBreakersAndBirds(const Ray& ray, double max_range_m);
 
   /// Churned water, plumes and fog, as FromDrops.
-  std::optional<Echo> FromClouds(const Ray& ray, const Ray& ray_vessel, double max_range_m) { return clouds_.Meet(ray, ray_vessel, max_range_m); }
+  std::optional<Echo> FromClouds(const Ray& ray, const Ray& ray_vessel, double max_range_m) {
+    return clouds_.FirstEcho(ray, ray_vessel, max_range_m);
+  }
 
   static constexpr double kPeriodS = 0.01;
 

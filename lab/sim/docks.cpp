@@ -146,8 +146,8 @@ void OutlineOfComb(const Deck& main, const std::vector<Deck>& port_teeth, const 
 // Straight, as a T, as an L, or with fingers on one or both sides.
 void MakeRun(const Size& size, bool is_floating, Model& model) {
   SceneObject& dock = model.object();
-  const double length_m = model.Given(size.length_m, 4.0, 35.0);
-  const double width_m = model.Given(size.width_m, 0.9, 3.5);
+  const double length_m = model.GivenOrDrawn(size.length_m, 4.0, 35.0);
+  const double width_m = model.GivenOrDrawn(size.width_m, 0.9, 3.5);
   const Build build = DrawBuild(is_floating, model);
   const double half_m = width_m / 2.0;
   const Deck main{0.0, length_m, -half_m, half_m};
@@ -214,7 +214,7 @@ void MakeDockBays(const Size& size, Model& model) {
   const int num_bays = model.Whole(2, 3);
   const double bay_m = model.Between(3.0, 7.0);
   const double wall_m = model.Between(0.5, 1.5);
-  const double depth_m = model.Given(size.length_m, 4.0, 9.0);
+  const double depth_m = model.GivenOrDrawn(size.length_m, 4.0, 9.0);
   const double back_m = model.Between(0.6, 2.5);
   constexpr double kLeastBayM = 0.5;
   const double width_m =

@@ -51,7 +51,7 @@ class Edges {
     std::size_t object = 0;     // beside which it lies, as given to Add
     double least_gap_m = 0.0;   // to keep from it
     double next_along_m = 0.0;  // of the row, when it may lie here
-    double to_land_m = 0.0;     // of what begins at the edge and runs out from it: how far the waterline lies behind that, at most
+    double to_land_m = 0.0;     // of an object that begins at the edge and runs out from it: how far the waterline lies behind that, at most
   };
 
   /// A try: whether something else lies there is not looked at.

@@ -28,7 +28,7 @@ constexpr Material kClothes{0.4};
 constexpr int kMaxReeds = 220;
 constexpr int kMaxTrees = 90;
 constexpr int kMaxFolds = 120;
-constexpr double kBuriedM = 0.5;  // what stands on a slope begins below the ground
+constexpr double kBuriedM = 0.5;  // objects on a slope begin below the ground
 
 // Places things on one stretch.
 class Gardener {

@@ -132,7 +132,7 @@ Lidar::RayPair Lidar::RayOf(double origin_height_m, double azimuth_rad, double e
 }
 
 // Surfaces of objects and of the own boat, as far as the sea does not hide them.
-Echoes Lidar::Meet(const RayPair& ray, double max_range_m, double time_s) {
+Echoes Lidar::Trace(const RayPair& ray, double max_range_m, double time_s) {
   auto echoes = own_caster_.Cast(ray.vessel, max_range_m, false);
   if (echoes.count > 0) return echoes;
   const bool wants_second = effects_.return_mode() != config::Scene::STRONGEST;
@@ -149,7 +149,7 @@ Echoes Lidar::Meet(const RayPair& ray, double max_range_m, double time_s) {
 }
 
 // A shot that meets nothing on its way into the water.
-void Lidar::MeetWater(const Ray& ray, double max_range_m, Seen& seen) {
+void Lidar::TraceWater(const Ray& ray, double max_range_m, Seen& seen) {
   if (const auto echo = clutter_.FromWater(ray, max_range_m)) seen.Add(Measure(*echo));
   if (effects_.mirror_strength() > 0.0 && sea_.is_calm() && ray.direction.z() < 0.0) {
     // Mirrored at the water, the ray comes from the eye's image below it: its range is that of the whole way.
@@ -186,7 +186,7 @@ Lidar::Shot Lidar::Fire(const RayPair& ray, double time_s) {
   const double down = ray.map.direction.z();
   const double to_water_m = down < 0.0 ? -(ray.map.origin_m.z() + sea_.max_height_m()) / down : kMaxRangeM;
   const double max_range_m = std::clamp(to_water_m, 0.0, kMaxRangeM);
-  Echoes echoes = Meet(ray, max_range_m, time_s);
+  Echoes echoes = Trace(ray, max_range_m, time_s);
   Seen seen;
   const bool meets_own = echoes.count > 0 && echoes.echo[0].reason == ReturnReason::kOwnVessel;
   if (!meets_own) {
@@ -204,7 +204,7 @@ Lidar::Shot Lidar::Fire(const RayPair& ray, double time_s) {
       measured.power = std::min(measured.power * kBehindFoliageShare, seen.count > 0 ? seen.measurement[0].power : 1.0) / 2.0;
     seen.Add(measured);
   }
-  if (echoes.count == 0) MeetWater(ray.map, max_range_m, seen);
+  if (echoes.count == 0) TraceWater(ray.map, max_range_m, seen);
   if (const auto drop = clutter_.FromDrops(ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) {
     // A drop is either large and near enough or not: no range at which it is seen half of the time.
     const Measurement measured = ToMeasurement(drop->hit.range_m, drop->material.reflectance, kNoObject, drop->reason);

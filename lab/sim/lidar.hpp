@@ -91,8 +91,8 @@ class Lidar {
   };
   RayPair RayOf(double origin_height_m, double azimuth_rad, double elevation_rad, const Eigen::Isometry3d& T_map_vessel) const;
   Shot Fire(const RayPair& ray, double time_s);
-  Echoes Meet(const RayPair& ray, double max_range_m, double time_s);
-  void MeetWater(const Ray& ray, double max_range_m, Seen& seen);
+  Echoes Trace(const RayPair& ray, double max_range_m, double time_s);
+  void TraceWater(const Ray& ray, double max_range_m, Seen& seen);
   Shot Choose(const Seen& seen) const;
   bool FiresFrom(std::int64_t sequence) const;
   Measurement Measure(const Echo& echo);

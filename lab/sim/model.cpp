@@ -34,7 +34,7 @@ std::vector<Vector2d> OutlineOf(const HullPlan& plan) {
 
 int Model::Whole(int low, int high) { return low + std::min(static_cast<int>(random_.Uniform() * (high - low + 1)), high - low); }
 
-double Model::Given(double given, double low, double high) {
+double Model::GivenOrDrawn(double given, double low, double high) {
   const double drawn = Between(low, high);
   return given > 0.0 ? given : drawn;
 }

@@ -35,7 +35,7 @@ class Model {
   /// From `low` to `high`, both included.
   int Whole(int low, int high);
   /// What the file gives, else a drawn number. Draws in both cases.
-  double Given(double given, double low, double high);
+  double GivenOrDrawn(double given, double low, double high);
 
   /// Of a hull or body: bright gelcoat and paint, dull colours, dark paint, near black; or what the file gives.
   Material Paint(double given = 0.0);

@@ -40,7 +40,7 @@ struct Track {
   double speed_mps = 0.0;
   double turn_rate_radps = 0.0;  // clockwise
   std::vector<Leg> legs{};       // of a route, by time from 0 on; the turn rate above then has no meaning
-  double route_s = 0.0;          // what the legs take; then it begins anew when it is closed, else it stops there
+  double route_s = 0.0;          // time of the legs; then it begins anew when it is closed, else it stops there
   bool is_closed = false;
 
   bool is_moving() const { return speed_mps != 0.0 || turn_rate_radps != 0.0; }

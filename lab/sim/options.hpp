@@ -21,8 +21,8 @@ struct Options {
   // Of a capture. 2026-06-15 14:10:00 UTC: any date serves, as long as it is always the same.
   std::int64_t start_utime_us = 1'781'532'600'000'000;
   double speed = 1.0;           // to udp_host, times real time; 0 = without waiting
-  SimulationParams simulation;  // seed, faults, and what of lidar and navigation no config file says
-  Effects effects;              // what is set here overrides the scene's
+  SimulationParams simulation;  // seed, faults, and values of lidar and navigation that no config file has
+  Effects effects;              // values set here override the scene's
   FaultParams network;
 };
 

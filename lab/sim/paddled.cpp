@@ -24,9 +24,9 @@ void AddPaddle(const Vector3d& hands_m, double length_m, Model& model) {
 
 // Kayaks, closed around their paddlers, and canoes, open and with higher ends: one to three people, rarely none.
 void MakeCanoe(const Size& size, Model& model) {
-  const double length_m = model.Given(size.length_m, 2.6, 6.5);
+  const double length_m = model.GivenOrDrawn(size.length_m, 2.6, 6.5);
   const bool is_open = model.Chance(0.4);
-  const double width_m = model.Given(size.width_m, is_open ? 0.7 : 0.48, is_open ? 1.0 : 0.85);
+  const double width_m = model.GivenOrDrawn(size.width_m, is_open ? 0.7 : 0.48, is_open ? 1.0 : 0.85);
   model.Float(length_m, width_m);
   HullPlan plan{length_m, width_m};
   plan.bow_power = model.Between(1.3, 2.2);
@@ -79,8 +79,8 @@ void MakePaddleBoard(const Size& size, Model& model) {
 
 // Two floats, seats on a deck between them, some with a slide or the shape of an animal.
 void MakePedalBoat(const Size& size, Model& model) {
-  const double length_m = model.Given(size.length_m, 2.2, 4.2);
-  const double width_m = model.Given(size.width_m, 1.4, 2.0);
+  const double length_m = model.GivenOrDrawn(size.length_m, 2.2, 4.2);
+  const double width_m = model.GivenOrDrawn(size.width_m, 1.4, 2.0);
   model.Float(length_m, width_m);
   const Material paint = model.Paint(size.reflectance);
   const double float_m = model.Between(0.3, 0.45);
@@ -117,8 +117,8 @@ void MakePedalBoat(const Size& size, Model& model) {
 
 // Logs or barrels under a deck, bathing islands with a ladder, inflatable ones; people, a tent, a flag.
 void MakeRaft(const Size& size, Model& model) {
-  const double length_m = model.Given(size.length_m, 1.8, 6.0);
-  const double width_m = model.Given(size.width_m, 0.5 * length_m, 0.95 * length_m);
+  const double length_m = model.GivenOrDrawn(size.length_m, 1.8, 6.0);
+  const double width_m = model.GivenOrDrawn(size.width_m, 0.5 * length_m, 0.95 * length_m);
   model.Float(length_m, width_m);
   const double deck_m = model.Between(0.12, 0.5);
   const int form = model.Whole(0, 2);
@@ -166,7 +166,7 @@ void MakeRaft(const Size& size, Model& model) {
 
 // A head, shoulders or arms, a swim buoy in tow; wet skin is dark.
 void MakeBather(const Size& size, Model& model) {
-  const double head_m = model.Given(size.width_m, 0.17, 0.26) / 2.0;
+  const double head_m = model.GivenOrDrawn(size.width_m, 0.17, 0.26) / 2.0;
   const Material skin{model.Between(0.05, 0.4)};
   const Material cap = model.Chance(0.4) ? model.Paint() : skin;
   model.Float(0.4, 0.4);

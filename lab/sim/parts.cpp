@@ -8,8 +8,8 @@ namespace lookout::sim {
 
 HullPlan DrawPlan(const Size& size, const Range& length, const ByLength& least_width, const ByLength& greatest_width, Model& model) {
   HullPlan plan;
-  plan.length_m = model.Given(size.length_m, length.low_m, length.high_m);
-  plan.width_m = model.Given(size.width_m, least_width.Of(plan.length_m), greatest_width.Of(plan.length_m));
+  plan.length_m = model.GivenOrDrawn(size.length_m, length.low_m, length.high_m);
+  plan.width_m = model.GivenOrDrawn(size.width_m, least_width.Of(plan.length_m), greatest_width.Of(plan.length_m));
   model.Float(plan.length_m, plan.width_m);
   return plan;
 }

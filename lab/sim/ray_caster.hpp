@@ -106,7 +106,7 @@ class RayCaster {
   std::vector<Item> items_;
   std::vector<std::vector<const Item*>> bins_;  // by direction, counter-clockwise from the x axis
   std::vector<std::size_t> order_;
-  std::vector<const Item*> near_;  // what the beam of this call may meet, nearest first
+  std::vector<const Item*> near_;  // parts that the beam of this call may meet, nearest first
   double sorted_at_s_ = -1e9;
   double tilted_at_s_ = -1e9;
 };

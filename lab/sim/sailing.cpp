@@ -279,8 +279,8 @@ void MakeTwinHull(const Size& size, Model& model) {
   double length_m = 0.0;
   double beam_m = 0.0;
   const auto draw = [&](double shortest_m, double longest_m, double least_share, double greatest_share) {
-    length_m = model.Given(size.length_m, shortest_m, longest_m);
-    beam_m = model.Given(size.width_m, least_share * length_m, greatest_share * length_m);
+    length_m = model.GivenOrDrawn(size.length_m, shortest_m, longest_m);
+    beam_m = model.GivenOrDrawn(size.width_m, least_share * length_m, greatest_share * length_m);
     model.Float(length_m, beam_m);
   };
   if (form == 0) {

@@ -60,7 +60,7 @@ struct SceneObject {
   std::vector<Eigen::Vector2d> outline_m;  // all parts seen from above: a simple polygon, object frame
   // A boat, swimmer, buoy or marker; not land, nor what is built on it: docks, piers and walls.
   bool is_in_water = false;
-  Eigen::Vector2d waterline_m = Eigen::Vector2d::Zero();  // length and width of what floats and rides the waves; zero = stands on the ground
+  Eigen::Vector2d waterline_m = Eigen::Vector2d::Zero();  // length and width of a thing that floats and rides the waves; zero = stands on the ground
 
   bool is_afloat() const { return !waterline_m.isZero(); }
 };

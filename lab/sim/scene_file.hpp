@@ -25,7 +25,7 @@ std::filesystem::path FindScene(const std::string& name_or_path, const std::file
 
 struct SceneSummary {
   std::string name;
-  std::string description;  // one line: what it is for
+  std::string description;  // one line: its purpose
 };
 
 /// What FindScene finds by name, sorted, but for families.

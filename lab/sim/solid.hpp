@@ -80,7 +80,7 @@ struct Plane {
 /// What lies inside of all planes, without what lies inside of all planes of the hollow.
 struct Convex {
   std::vector<Plane> planes;
-  std::vector<Plane> hollow;  // none = solid. Where it goes beyond the planes it is open: one sees what lies in it
+  std::vector<Plane> hollow;  // none = solid. Where it goes beyond the planes it is open: one sees into it
   Bounds bounds;
 };
 
@@ -96,7 +96,7 @@ struct LeaningWalls {
   double top_m = 0.0;            // at x = 0
   double top_slope = 0.0;        // rise per metre along x
   double wall_m = 0.0;           // thickness; 0 = solid, else open on top
-  double hollow_bottom_m = 0.0;  // of what is open on top
+  double hollow_bottom_m = 0.0;  // of a part that is open on top
 };
 Convex ToConvex(const LeaningWalls& walls);
 

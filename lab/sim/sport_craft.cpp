@@ -134,8 +134,8 @@ void MakeWindsurfer(const Size& size, Model& model) {
 
 // Boats without crew, as universities build them: a short hull, one or with outriggers, a box, a mast with sensors.
 void MakeRobotBoat(const Size& size, Model& model) {
-  const double length_m = model.Given(size.length_m, 0.9, 4.0);
-  const double width_m = model.Given(size.width_m, 0.3 * length_m, 0.6 * length_m);
+  const double length_m = model.GivenOrDrawn(size.length_m, 0.9, 4.0);
+  const double width_m = model.GivenOrDrawn(size.width_m, 0.3 * length_m, 0.6 * length_m);
   const bool has_outriggers = model.Chance(0.3);
   model.Float(length_m, width_m);
   const double hull_width_m = has_outriggers ? 0.45 * width_m : width_m;

@@ -62,7 +62,7 @@ class Traffic {
   };
   struct Mover {
     std::string name;
-    std::vector<Shape> shapes;  // by sample; one of what stands still
+    std::vector<Shape> shapes;  // by sample; one of a standing thing
     double speed_mps;           // from one sample to the next no point of it is faster
     bool is_in_water = true;
   };
@@ -74,7 +74,7 @@ class Traffic {
   int num_samples_;
   std::optional<Mover> own_boat_;
   std::vector<Mover> others_;
-  std::vector<Mover> obstacles_;  // of the own boat: the others, or what they stand on
+  std::vector<Mover> obstacles_;  // of the own boat: the others, or the ground that they stand on
 };
 
 }  // namespace lookout::sim

@@ -13,7 +13,7 @@ namespace lookout::georeferencer {
 
 namespace {
 
-// What the status of POSE means for obstacles; empty where it is OK.
+// The consequence of the status of POSE for obstacles; empty where it is OK.
 std::string_view PoseText(std::int32_t pose_status) {
   switch (pose_status) {
     case pose_t::STATUS_NO_HEADING:

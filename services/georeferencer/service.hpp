@@ -22,10 +22,10 @@ class Service {
  public:
   Service(bus::Bus& bus, const Params& params);
 
-  /// Live only: host time has come so far. What has waited too long for POSE is sent without it.
+  /// Live only: host time has come so far. Segments that have waited too long for POSE are sent without it.
   void AdvanceTo(Utime host_time);
 
-  /// End of input: what waits is sent with the poses that are there.
+  /// End of input: waiting segments are sent with the poses that are there.
   void Finish();
 
   /// Messages of SEGMENTS that wait for POSE.

@@ -146,7 +146,7 @@ std::vector<obstacles_t> ToMessages(const ObstaclePart& part, int max_message_by
   head.datum_ellipsoid_height_m = Canonical(part.datum.ellipsoid_height_m);
   const int head_bytes = head.getEncodedSize();
 
-  // Filled in order; the second holds what does not fit into the first.
+  // Filled in order; the second holds the obstacles that do not fit into the first.
   std::vector<obstacles_t> messages{head};
   int num_bytes = head_bytes;
   for (const auto& obstacle : part.obstacles) {

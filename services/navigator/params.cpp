@@ -21,7 +21,7 @@ namespace {
 
 std::chrono::microseconds ToMicroseconds(double duration_s) { return std::chrono::microseconds(std::llround(duration_s * 1e6)); }
 
-// What termios of Linux has names for, from 1200 on.
+// Rates for which termios of Linux has names, from 1200 on.
 constexpr std::array kBauds{1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600, 1000000, 2000000, 4000000};
 
 static_assert(static_cast<int>(Role::kAll) == config::NavigationInput::ALL && static_cast<int>(Role::kGnss) == config::NavigationInput::GNSS &&
@@ -76,7 +76,7 @@ class InputsReader {
     Require(is_fine, "input", "'" + message_.input(index_).name() + "': " + reason, index_);
   }
 
-  // A text log has times of its own, and what comes live those of now: they make no one sequence.
+  // A text log has times of its own, and live inputs those of now: they make no one sequence.
   void CheckTextLogs(const Params& params) {
     const auto is_text_log = [](const Connection& connection) { return connection.kind == Connection::Kind::kTextLog; };
     const auto first = std::ranges::find_if(params.connections, is_text_log);

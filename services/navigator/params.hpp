@@ -32,7 +32,7 @@ struct Params {
   bool use_lidar_nmea = true;
   NavigatorParams navigator;
 
-  // For main: what is opened. Text logs alone, or others and no text log.
+  // The sources to open, for main. Text logs alone, or others and no text log.
   std::vector<Connection> connections;
   // For replay: the source of each UDP port of a capture.
   std::map<int, std::string> source_of_port;
@@ -47,7 +47,7 @@ std::optional<std::chrono::sys_days> ParseDay(std::string_view text);
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
 
-/// What --check prints besides the values: each source, and the meaning of its signs. Lines of a comment.
+/// The words of --check besides the values: each source, and the meaning of its signs. Lines of a comment.
 std::string InWords(const Params& params);
 
 }  // namespace lookout::navigator

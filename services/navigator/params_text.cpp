@@ -1,4 +1,4 @@
-// What --check says of the inputs.
+// The words of --check for the inputs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ std::string RoleInWords(Role role) {
   return kWords.at(static_cast<std::size_t>(role) - static_cast<std::size_t>(Role::kAll));
 }
 
-// The first position in what a text log begins with; a live input has none before it is opened.
+// The first position in the beginning of a text log; a live input has none before it is opened.
 std::optional<GeodeticPlace> FirstPosition(const std::filesystem::path& file) try {
   constexpr std::size_t kMaxBytes = 1'000'000;
   std::error_code error;
@@ -92,7 +92,7 @@ std::string HeightInWords(double height_m) {
 }
 
 std::string SourceInWords(const Params& params, const SourceParams& source) {
-  // What the sensor says in the examples.
+  // The sensor's angles in the examples.
   constexpr double kExampleDeg = 5.0;
   constexpr double kExampleM = 10.0;
   const auto& navigator = params.navigator;

@@ -123,7 +123,7 @@ HealthReport Service::Report() const {
   for (const auto& counter : sequencer_.counters()) report.counters.push_back(counter);
   for (const auto& counter : navigator_.counters()) report.counters.push_back(counter);
 
-  // What never came, then what came and has stopped.
+  // Inputs that never came, then inputs that have stopped.
   const auto& pose = navigator_.last_pose();
   const auto add = [&report](const std::string& reason) { report.Degrade(reason, ", "); };
   const auto& filter = navigator_.filter();

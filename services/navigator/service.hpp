@@ -25,10 +25,10 @@ class Service {
  public:
   Service(bus::Bus& bus, const Params& params);
 
-  /// NMEA 0183 from outside. Each line is published as NAV_RAW, and then exactly that is consumed. Not for who reads NAV_RAW.
+  /// NMEA 0183 from outside. Each line is published as NAV_RAW, and then exactly that message is consumed. Not for a service that reads NAV_RAW.
   ///
   /// @param source  IsSourceName
-  /// @param sender  address and port: lines may be cut over datagrams of one sender. Empty: the lines of each datagram are whole
+  /// @param sender  address and port: lines may be cut over datagrams of one sender. Empty: the lines of each datagram are complete
   void OnDatagram(Utime arrival, Bytes payload, const std::string& source = kUdpSource, const std::string& sender = {});
 
   /// The same out of a stream, in pieces of any size.
@@ -37,10 +37,11 @@ class Service {
   /// The stream broke off: its incomplete line is void.
   void OnStreamEnd(const std::string& source);
 
-  /// Advances to this host time: ticks, and a start mark when the host clock was set back. Not for who reads NAV_RAW.
+  /// Advances to this host time: ticks, and a start mark when the host clock was set back. Not for a service that reads NAV_RAW.
   void AdvanceTo(Utime host_time);
 
-  /// End of input: publishes the END mark, if anything ever came, and consumes it; who reads NAV_RAW publishes the last pose, unless an END mark did.
+  /// End of input: publishes the END mark, if anything ever came, and consumes it; a service that reads NAV_RAW publishes the last pose, unless an
+  /// END mark did.
   void Finish(Utime host_time);
 
   HealthReport Report() const;

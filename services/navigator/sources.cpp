@@ -107,7 +107,7 @@ std::unique_ptr<runtime::SourceReader> OpenSources(const Params& params, Service
       std::move(sources), runtime::LiveReader::Limits{.period = kTick, .max_pieces = kMaxPieces, .reads_when_readable = true},
       runtime::LiveReader::Handlers{
           .on_piece = [&service](const std::string& name, const io::Source::Piece& piece) { Pass(name, piece, service); },
-          // Where the process stood still since the start of the round, that is before what was read: it would look like a clock that was set back.
+          // A process that stood still since the start of the round would otherwise look like a clock that was set back.
           .on_round = [&service](const auto& round) { service.AdvanceTo(round.latest); }});
 }
 

@@ -9,7 +9,7 @@ namespace lookout::navigator {
 
 namespace {
 
-// What GNSS_FIX and ATTITUDE have in common.
+// Members that GNSS_FIX and ATTITUDE share.
 template <typename Message, typename Measured>
 Message Begin(const Measured& measured, std::int64_t seq, std::int64_t raw_seq) {
   Message message{};

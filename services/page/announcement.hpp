@@ -1,4 +1,4 @@
-// What the start says of where the page is: its address, who sees it, and the link with the token, as text and as a QR code.
+// The page's announcement at the start: its address, who sees it, and the link with the token, as text and as a QR code.
 #pragma once
 
 #include <string>

@@ -48,8 +48,8 @@ struct FilmRequest {
   std::string map_file;
 };
 
-// The files that hold an event. One that is empty (a recorder whose power failed) does not keep the others from being shown.
-// @throws std::runtime_error for what is no lcm-log, and where no file is left
+// The files that hold an event. An empty one (a recorder whose power failed) does not keep the others from being shown.
+// @throws std::runtime_error for a file that is no lcm-log, and where no file is left
 std::vector<std::filesystem::path> LogsOf(const std::vector<std::string>& files) {
   std::vector<std::filesystem::path> logs;
   std::string without_event;

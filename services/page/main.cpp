@@ -41,7 +41,7 @@ Config Load(const std::filesystem::path& config_folder) {
   return config;
 }
 
-// Tells what is lacking and goes on: a page without a map is better than none.
+// Tells missing parts and goes on: a page without a map is better than none.
 template <typename Open>
 auto OpenOrTell(std::string& fault, const Open& open) -> decltype(open()) {
   try {

@@ -38,7 +38,7 @@ bool IsForOthers(const std::string& bind_address);
 /// Who can see the picture of a page there, as a part of a sentence: "this computer alone (127.0.0.1)".
 std::string WhoSees(const std::string& bind_address);
 
-/// What --check prints besides the values: who sees the picture, and who can acknowledge.
+/// The words of --check besides the values: who sees the picture, and who can acknowledge.
 std::string InWords(const Params& params);
 
 /// Where a browser of this computer finds it: "http://localhost:7668/".

@@ -23,7 +23,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// What was sent takes effect with the next scan: the same again is none.
+// An order takes effect with the next scan: the same order before that is a repetition.
 constexpr auto kAcknowledgedFor = 1s;
 constexpr auto kOrderedFor = 1s;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;

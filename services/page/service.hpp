@@ -24,7 +24,7 @@
 
 namespace lookout::page {
 
-/// What browsers tell the look-out, on its way from the server's thread to that of the bus.
+/// Commands of browsers to the look-out, on their way from the server's thread to that of the bus.
 template <typename Command>
 class CommandQueue {
  public:
@@ -56,19 +56,19 @@ class CommandQueue {
 using AcknowledgementQueue = CommandQueue<Acknowledgement>;
 using OrderQueue = CommandQueue<Order>;
 
-/// What the service is given besides its bus.
+/// Inputs of the service besides its bus.
 struct ServiceParts {
   Server& server;
   AcknowledgementQueue& acknowledgements;
   OrderQueue& orders;
   std::function<Utime()> now;                                                          // host time
   std::function<void(Utime time, std::string_view channel, Bytes message)> keep = {};  // for the last minutes; none: they are not kept
-  std::function<void(HealthReport& report)> add_to_report = {};                        // what else is to be told
+  std::function<void(HealthReport& report)> add_to_report = {};                        // further parts of the report
 };
 
-/// It subscribes all that a page shows: not the raw channels, LIDAR_NMEA and SIM_TRUTH. What does not decode, or is of a second publisher, is shown
-/// to nobody. An acknowledgement counts while ALERTS came within kFresh of host time and hold that alert, active or rectified; an order while ALERTS
-/// come.
+/// It subscribes all channels that a page shows: not the raw ones, LIDAR_NMEA and SIM_TRUTH. A message that does not decode, or is of a second
+/// publisher, is shown to nobody. An acknowledgement counts while ALERTS came within kFresh of host time and hold that alert, active or rectified; an
+/// order while ALERTS come.
 class Service {
  public:
   static constexpr std::chrono::seconds kFresh{1};
@@ -95,7 +95,7 @@ class Service {
 
   bus::Bus& bus_;
   ServiceParts parts_;
-  // What a whole look-out gives.
+  // The channels of a complete look-out.
   std::array<InputWatch, 6> watches_{InputWatch(bus::kLidarScan.name), InputWatch(bus::kSegments.name), InputWatch(bus::kPose.name),
                                      InputWatch(bus::kObstacles.name), InputWatch(bus::kTracks.name),   InputWatch(bus::kAlerts.name)};
   std::set<AlertKey> alerts_;         // of the last ALERTS: those that an acknowledgement is wanted for

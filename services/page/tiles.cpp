@@ -152,7 +152,7 @@ Tiles::Tiles(const std::filesystem::path& file) : implementation_(std::make_uniq
     return found != metadata.end() ? found->second : std::string();
   };
   self.CheckFirstTile(value("format"));
-  // What the tiles say, not what the metadata say of them: with the index that the specification wants both are found at once.
+  // By the tiles themselves, not by the metadata: with the index that the specification wants both are found at once.
   const nlohmann::json text{{"name", value("name")},
                             {"min_zoom", self.Number("SELECT min(zoom_level) FROM tiles")},
                             {"max_zoom", self.Number("SELECT max(zoom_level) FROM tiles")},

@@ -26,7 +26,7 @@ void Run(lookout::runtime::Process& process, const lookout::plotter::Params& par
   });
   process.Run([&service] { return service.Report(); });
   service.Finish();
-  // What was sent last is given a moment to go out.
+  // The last messages are given a moment to go out.
   constexpr int kLastPolls = 20;
   for (int i = 0; i < kLastPolls; ++i) {
     links.Poll();

@@ -5,7 +5,7 @@
 
 namespace lookout::plotter {
 
-// Where nobody listens nothing is made; who comes is told all.
+// Where nobody listens nothing is made; a new receiver is told all.
 bool Output::IsOpen(std::chrono::microseconds passed) {
   if (!link_->is_open()) {
     link_->NoteUnsent();

@@ -1,4 +1,4 @@
-// One receiver: what it is told, in its language, over its link.
+// One receiver: its messages, in its language, over its link.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@
 
 namespace lookout::plotter {
 
-/// What is known now. Views into the service.
+/// The scene now. Views into the service.
 struct Told {
   std::chrono::microseconds passed{0};  // host time, as of PassedTime
   const OwnShip& own;
@@ -40,21 +40,21 @@ class Output {
 
   /// Once each own_ship_period, while POSE comes: told.own may say that the position is not known.
   void TellOwnShip(const Told& told);
-  /// After each TRACKS, while targets may be told: those that are due, and once those that are there no more.
+  /// After each TRACKS, while targets may be told: due targets, and once those that are there no more.
   void TellTargets(const Told& told);
-  /// They may be told no more: what they are is not known. To be called until they may be told again.
+  /// Targets may be told no more: their state is not known. Must be called until they may be told again.
   void StopTargets(const Told& told);
   /// The process ends in order: targets are ended, notices stay.
   void Finish(const Told& told);
-  /// Ten times a second or more: those that are due.
+  /// Ten times a second or more: due notices.
   void TellNotices(const Told& told);
 
-  /// Of what came back since the last call: notices that somebody acknowledges, by KeyOf.
+  /// Acknowledgements received since the last call: notices by KeyOf.
   std::vector<std::int64_t> TakeAcknowledged(const Told& told);
 
   /// Lines that could not be read.
   std::int64_t num_refused() const { return num_refused_; }
-  /// Of what must not be lost: what was, since the link took less than came.
+  /// Messages that must not be lost, and were, since the link took less than came.
   std::int64_t num_dropped() const { return num_dropped_; }
 
  protected:
@@ -65,14 +65,14 @@ class Output {
   virtual void SendNotices(const Told& told) = 0;
   /// To a receiver that knows nothing yet.
   virtual void SendAnew() = 0;
-  /// Of what came back, whether or not acknowledgements are taken. @return keys of notices that `message` acknowledges
+  /// A received message, whether or not acknowledgements are accepted. @return keys of notices that `message` acknowledges
   virtual std::vector<std::int64_t> Read(const std::string& /*message*/, const Told& /*told*/) { return {}; }
 
-  /// @return false where the link has no room now, or what must not be lost waits: it is to be tried again
+  /// @return false where the link has no room now, or a message that must not be lost waits: try again
   bool Send(const std::string& message);
-  /// What must not be lost: it waits for room. Beyond kMostWaiting the oldest is dropped and counted.
+  /// A message that must not be lost waits for room. Beyond kMostWaiting the oldest is dropped and counted.
   ///
-  /// @param subject  what waits of it is replaced; empty: of none
+  /// @param subject  a waiting message of this subject is replaced; empty: of none
   void SendSurely(std::string message, const std::string& subject = {});
   static constexpr std::size_t kMostWaiting = 2000;
   std::size_t room_bytes() const { return link_->room_bytes(); }
@@ -92,7 +92,7 @@ class Output {
     std::string message;
   };
   std::deque<WaitingMessage> waiting_;
-  // Somebody who connects again and again must not make everything be sent again and again.
+  // A receiver that connects again and again must not make everything be sent again and again.
   static constexpr std::chrono::seconds kAnewPeriod{2};
   bool owes_anew_ = false;
   std::optional<std::chrono::microseconds> anew_;

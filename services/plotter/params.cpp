@@ -86,7 +86,7 @@ class OutputsReader {
         config::FaultLine(folder_ / kFile, "output", "'" + message_.output(index_).name() + "': " + reason, static_cast<std::size_t>(index_)));
   }
 
-  // What the navigator would read of it: a position of ours that comes back to us as one that was measured would hide that none is.
+  // Refuses an output that the navigator would read: our own position would come back as a measured one, and hide that none is.
   void CheckAgainstNavigator(const OutputParams& params) {
     const auto& to = params.destination;
     const auto is_same_device = [&to](const config::NavigationInput& input) {
@@ -181,7 +181,7 @@ class OutputsReader {
       destination.kind = Destination::Kind::kSerial;
       destination.device = output.serial().device();
       destination.baud = output.serial().baud();
-      // What termios of Linux has names for, from 1200 on.
+      // Rates for which termios of Linux has names, from 1200 on.
       static const std::set<int> kBauds{1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600, 1000000, 2000000, 4000000};
       Require(destination.device.is_absolute(), "serial.device must be the whole path of a device, as /dev/ttyUSB0");
       Require(kBauds.contains(destination.baud),
@@ -201,7 +201,7 @@ class OutputsReader {
     return destination;
   }
 
-  // Whoever has the token may write to the server: a file that all may read is refused.
+  // The token lets its holder write to the server: a file that all may read is refused.
   std::string ReadToken(const fs::path& file) {
     constexpr std::size_t kMostBytes = 4096;
     const auto quoted = "websocket.token_file '" + file.string() + "' ";

@@ -14,7 +14,7 @@ enum class Format { kNmea0183, kSignalK, kN2kActisense, kN2kYden };
 enum class SentTargets { kTtm, kTll, kNone };
 enum class SentAlerts { kNone, kAlr, kAlf };
 
-/// Where an output goes. What a kind does not use is empty.
+/// The receiver of an output. Members that its kind does not use are empty.
 struct Destination {
   enum class Kind { kUdp, kTcpServer, kTcpClient, kSerial, kWebSocket };
   Kind kind = Kind::kUdp;
@@ -54,7 +54,7 @@ struct Params {
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
 
-/// What --check prints besides the values: what each output sends, and to where.
+/// The words of --check besides the values: the messages of each output, and their receiver.
 std::string InWords(const Params& params);
 
 }  // namespace lookout::plotter

@@ -172,7 +172,7 @@ void Service::StopTargets() {
 }
 
 void Service::AdvanceTo(Utime host_time) {
-  // This process, or the computer, stood still: what came before is of then.
+  // This process, or the computer, stood still: earlier messages are of then.
   if (now_ && host_time - *now_ > kFresh) tracks_seen_ = alerts_seen_ = pose_seen_ = passed_.passed() - kFresh;
   now_ = host_time;
   const bool is_first = passed_.passed() == 0us;

@@ -48,7 +48,7 @@ void SignalKOutput::SendNotices(const Told& told) {
     raised->second.notice = notice;
     SendSurely(NoticeDelta(notice, raised->second.word, told.host_time), raised->second.word);
   }
-  // What ended is told again for a while, under its own word.
+  // An ended notice is told again for a while, under its own word.
   if (raised_.size() > kMostRaised) std::erase_if(raised_, [](const auto& one) { return one.second.notice.state == NoticeState::kCleared; });
 }
 
@@ -63,7 +63,7 @@ void SignalKOutput::SendAnew() {
   if (kind == Destination::Kind::kWebSocket || kind == Destination::Kind::kTcpClient) SendSurely(NoticeSubscription());
 }
 
-// A server keeps what a process before this one told.
+// A server keeps notifications of an earlier process.
 void SignalKOutput::EndLeftover(const NoticeEcho& echo, const Told& told) {
   const bool is_known = std::ranges::any_of(raised_, [&echo](const auto& one) { return one.second.word == echo.word; });
   if (is_known || !echo.is_raised || ended_words_.size() >= kMostRaised || !ended_words_.insert(echo.word).second) return;
@@ -80,11 +80,11 @@ std::vector<std::int64_t> SignalKOutput::Read(const std::string& message, const 
   std::vector<std::int64_t> keys;
   for (const auto& notice : told.notices) {
     const auto raised = raised_.find(RaisedKeyOf(notice));
-    // What was told as acknowledged or as over went out without sound, and comes back so.
+    // A notice that was told as acknowledged or over went out without sound, and comes back so.
     if (notice.id == 0 || raised == raised_.end() || raised->second.notice.state != notice.state) continue;
     const bool is_active = notice.state == NoticeState::kActive;
     if (!is_active && notice.state != NoticeState::kRectified) continue;
-    // So did what is active and not the one that sounds; and what a server has kept from before.
+    // So did an active one that is not the one that sounds; and one that a server has kept from before.
     const bool is_loud = raised->second.notice.sound == Sound::kSounds && raised->second.is_heard_loud;
     const bool is_acknowledged = std::ranges::any_of(read.echoes, [&](const NoticeEcho& echo) {
       const bool is_quiet = echo.is_quiet && (is_loud || !echo.is_raised);

@@ -17,7 +17,7 @@ namespace lookout::plotter {
 
 class SignalKOutput : public Output {
  public:
-  /// Also of what stands still: who shows targets drops what comes no more.
+  /// Also of standing targets: a display drops targets that come no more.
   static constexpr std::chrono::seconds kTargetPeriod{1};
 
   SignalKOutput(const OutputParams& params, std::unique_ptr<Link> link, const std::string& boat);
@@ -39,7 +39,7 @@ class SignalKOutput : public Output {
   struct Raised {
     std::string word;
     Notice notice;
-    bool is_heard_loud = false;  // it came back with sound since it was told so last: then quiet is what a person did
+    bool is_heard_loud = false;  // it came back with sound since it was told so last: then a person silenced it
   };
   static constexpr std::size_t kMostRaised = 1000;
   std::map<RaisedKey, Raised> raised_;

@@ -14,7 +14,7 @@ namespace lookout::plotter {
 
 namespace {
 
-// Bounds of what can be, far beyond what any lidar sees.
+// Bounds far beyond the reach of any lidar.
 constexpr double kMostSpeedMps = 1000.0;
 constexpr double kMostLengthM = 1e5;
 constexpr double kMostTcpaS = 1e6;

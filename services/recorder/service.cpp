@@ -16,7 +16,7 @@ namespace lookout::recorder {
 
 namespace {
 
-// What LCM sends to itself when it opens UDP multicast.
+// LCM sends this channel to itself when it opens UDP multicast.
 constexpr std::string_view kLcmSelfTest = "LCM_SELF_TEST";
 
 constexpr std::chrono::seconds kRunInfoPeriod(10);

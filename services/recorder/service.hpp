@@ -47,7 +47,7 @@ class Service {
   /// Lines for the log of the process that came up since the last call: channels that are not in the table, losses. Printable.
   std::vector<std::string> TakeWarnings();
 
-  /// What happened within the last minute, by the time of AdvanceTo, or is still so.
+  /// Events of the last minute, by the time of AdvanceTo, and states that still hold.
   HealthReport Report() const;
 
  private:

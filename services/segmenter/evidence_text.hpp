@@ -9,7 +9,7 @@
 
 namespace lookout::segmenter {
 
-/// @param layouts  what the method asks for; the file must hold a sum for each, of the same features in any order, and no other
+/// @param layouts  the method's sums; the file must hold each of them, of the same features in any order, and no other
 /// @return [layouts]
 /// @throws config::ConfigError with every fault
 std::vector<Evidence> LoadEvidence(const std::filesystem::path& file, std::span<const EvidenceLayout> layouts);

@@ -28,7 +28,7 @@ LookoutParams LookoutOf(const config::Segmenter& message, const std::filesystem:
   return params;
 }
 
-// What no field is wrong by itself in.
+// Faults of the relations between fields.
 void CheckRelations(const config::Segmenter& message, const std::filesystem::path& file) {
   config::FaultList faults;
   if (message.max_range_m() <= message.min_range_m()) faults.Add(config::FaultLine(file, "max_range_m", "must be greater than min_range_m"));

@@ -85,7 +85,7 @@ segment_t ToMessage(const Segment& segment) {
   return message;
 }
 
-// What all parts share, without labels and segments.
+// Members that all parts share, without labels and segments.
 segments_t PartOf(const Scan& scan, const Segments& segments, int part_index) {
   segments_t part{};
   part.utime_us = ToUtimeUs(scan.head.time);

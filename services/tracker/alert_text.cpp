@@ -32,7 +32,7 @@ std::string_view KindText(TrackKind kind) {
   }
 }
 
-// What is over, and why.
+// That an alert is over, and why.
 std::string EndText(const Alert& alert) {
   const auto who = NameOf(alert);
   switch (alert.end) {

@@ -34,7 +34,7 @@ std::optional<Legacy> ToLegacy(const alerts_t& alerts, const tracks_t& tracks) {
   legacy.time = *time;
   legacy.datum = {tracks.datum_latitude_deg, tracks.datum_longitude_deg, tracks.datum_ellipsoid_height_m};
   for (const auto& message : alerts.alerts) {
-    // Of no track: it may have been land, or what had no name yet; people are asked again.
+    // Of no track: it may have been land, or a thing without a name yet; people are asked again.
     if (message.state != alert_t::STATE_ACKNOWLEDGED || message.track_id <= 0) continue;
     Alert& alert = legacy.alerts.emplace_back();
     alert.id = message.id;

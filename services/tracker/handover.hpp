@@ -1,4 +1,4 @@
-// What one process of the tracker leaves to the next: its last ALERTS, and TRACKS of those that were acknowledged or have a name.
+// State that one process of the tracker leaves to the next: its last ALERTS, and TRACKS that were acknowledged or have a name.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ struct Legacy {
 /// @return nullopt where they are not well-formed, or not of one scan
 std::optional<Legacy> ToLegacy(const alerts_t& alerts, const tracks_t& tracks);
 
-/// A file that a process killed at any time leaves behind whole: an lcm-log of one ALERTS and one TRACKS. It stands where who starts the process
-/// keeps things from one start to the next, $RUNTIME_DIRECTORY (systemd, lookout-up); without one nothing is left and nothing found.
+/// A file that is complete whenever a process is killed: an lcm-log of one ALERTS and one TRACKS. It stands in $RUNTIME_DIRECTORY, which the
+/// supervisor (systemd, lookout-up) keeps from one start to the next; without one nothing is left and nothing found.
 class Handover {
  public:
   explicit Handover(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -41,9 +41,9 @@ class Handover {
   /// Of the process before; nullopt where there is none, or its file is damaged.
   std::optional<Legacy> Read();
 
-  /// After each scan. Only acknowledged alerts and names are worth keeping: without any, the file is removed, but not before what was read from it
+  /// After each scan. Only acknowledged alerts and names are worth keeping: without any, the file is removed, but not before the alerts read from it
   /// had time to be raised again. Written when other alerts are acknowledged or others have names, else once a second: each time waits for the disk.
-  /// A disk that is full is none of a look-out's troubles: then nothing is left.
+  /// On a full disk nothing is left, and the look-out goes on.
   void Write(const alerts_t& alerts, const tracks_t& tracks);
 
  private:

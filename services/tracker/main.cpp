@@ -14,9 +14,9 @@ constexpr std::chrono::milliseconds kTick(10);
 
 void Run(lookout::runtime::Process& process, const lookout::tracker::Params& params) {
   auto handover = lookout::tracker::Handover::FromEnvironment();
-  lookout::tracker::Service service(process.bus(), params, {.before = handover.Read(), .leave = [&handover](const auto& alerts, const auto& tracks) {
-                                                              handover.Write(alerts, tracks);
-                                                            }});
+  lookout::tracker::Service service(
+      process.bus(), params,
+      {.before = handover.Read(), .hand_over = [&handover](const auto& alerts, const auto& tracks) { handover.Write(alerts, tracks); }});
   process.Every(kTick, [&] {
     service.AdvanceTo(lookout::runtime::HostNow());
     if (service.TakeWatchChange()) process.ReportNow();

@@ -13,7 +13,7 @@ namespace {
 // A kayak, a swimmer's head and arms, a log.
 constexpr double kLowM = 0.5;
 
-// How near what is so low is seen, in all bearings of the zone.
+// The least distance at which so low a thing is seen, in all bearings of the zone.
 ZoneRemark LowThings(const ZoneSightParams& params) {
   const ZoneGrid grid(params, params.expected_elevation_rad, kLowM);
   const double step_m = params.zone.range_m / ZoneGrid::kNumRanges;

@@ -1,4 +1,4 @@
-// What the numbers of the guard zone mean, in words: for --check and lookout-doctor.
+// The numbers of the guard zone in words: for --check and lookout-doctor.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace lookout::tracker {
 
 struct ZoneRemark {
   std::string words;
-  std::string cure;  // what to look at; empty where nothing is doubtful
+  std::string cure;  // advice; empty where nothing is doubtful
 };
 
-/// Whether the beams of the lidar can look into all of the guard zone, as far as the config tells, and how near low things are seen. What the lidar
-/// itself is set to, and what stands before it, only its scans tell. None without a zone.
+/// Whether the beams of the lidar can look into all of the guard zone, as far as the config tells, and how near low things are seen. Settings of the
+/// lidar itself, and objects before it, only its scans tell. None without a zone.
 std::vector<ZoneRemark> RemarksOnZone(const Params& params);
 
 /// The same as comments of a text config, a line each: "# tracker.txtpb: ...", "# tracker.txtpb: warning: ...".

@@ -21,8 +21,8 @@ constexpr int kZoneTextBytes = 4096;
 
 }  // namespace
 
-Service::Service(bus::Bus& bus, const Params& params, Given given)
-    : bus_(bus), params_(params), given_(std::move(given)), gatherer_(given_.sources, params.wait_timeout) {
+Service::Service(bus::Bus& bus, const Params& params, RunContext context)
+    : bus_(bus), params_(params), context_(std::move(context)), gatherer_(context_.sources, params.wait_timeout) {
   bus::Subscribe<lidar_scan_t>(bus_, bus::kLidarScan, [this](const lidar_scan_t& message) { OnBeams(message); });
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnLabels(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
@@ -54,7 +54,7 @@ void Service::AddObstacles(std::span<const obstacles_t> parts) {
 }
 
 void Service::OnBeams(const lidar_scan_t& message) {
-  if (!given_.sources.has_beams) return;
+  if (!context_.sources.has_beams) return;
   if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return beams_refused_.Add(*fault);
   other_watches_[0].Note();
   if (message.num_parts == 1 && beams_parts_.is_empty()) return AddBeams({&message, 1}, true);
@@ -76,7 +76,7 @@ void Service::AddBeams(std::span<const lidar_scan_t> parts, bool is_whole) {
 }
 
 void Service::OnLabels(const segments_t& message) {
-  if (!given_.sources.has_labels) return;
+  if (!context_.sources.has_labels) return;
   const bool is_fitting = messages::IsWellFormed(message);
   if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return labels_refused_.Add(*fault);
   if (!is_fitting) return labels_refused_.Add(messages::kSegmentsCount);
@@ -109,7 +109,7 @@ void Service::OnPose(const pose_t& message) {
 
 void Service::OnAcknowledgement(const alert_ack_t& message) {
   if (const auto fault = messages::FaultOf(message)) return acknowledgements_refused_.Add(*fault);
-  if (given_.script) return;  // it says when each was taken
+  if (context_.script) return;  // it says when each was taken
   const auto acknowledgement = ToAcknowledgement(message);
   if (acknowledgement.alert_id < 0) {
     counts_.Add(watch_.Acknowledge(acknowledgement) ? "acks_taken" : "acks_of_no_alert");
@@ -122,7 +122,7 @@ void Service::OnAcknowledgement(const alert_ack_t& message) {
 
 void Service::OnOrder(const order_t& message) {
   if (const auto fault = messages::FaultOf(message)) return orders_refused_.Add(*fault);
-  if (given_.script) return;
+  if (context_.script) return;
   // Silence is of what sounds now. Where no scan comes it would wait, and begin with the look-out.
   const bool is_late = message.kind == order_t::KIND_SILENCE && watch_.is_failing();
   if (is_late || orders_.size() >= kMaxOrders) {
@@ -145,7 +145,7 @@ bool Service::TakeWatchChange() { return std::exchange(reported_failing_, watch_
 
 void Service::Finish() {
   for (const auto& scan : gatherer_.Finish()) {
-    if (given_.script && given_.script->stretches.back().last < scan.key()) {
+    if (context_.script && context_.script->stretches.back().last < scan.key()) {
       ++counts_["scans_not_of_the_live_run"];  // its process was stopped while this one waited
     } else {
       Use(scan);
@@ -164,7 +164,7 @@ void Service::Use(const GatheredScan& scan) {
   }
   if (!memory_) {
     Begin(scan.key());
-    if (const auto& before = given_.before) {
+    if (const auto& before = context_.before) {
       memory_->kept.Keep(before->time, before->datum, before->alerts, before->tracks);
       memory_->kept_names.Keep(before->time, before->datum, before->names, before->tracks);
     }
@@ -200,7 +200,7 @@ void Service::Use(const GatheredScan& scan) {
   TellOfZone(message);
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
-  Leave(message, picture);
+  HandOver(message, picture);
 
   memory_->picture = &picture;
   num_alerts_ = std::ranges::count_if(alerts, [](const Alert& alert) { return alert.state != AlertState::kCleared; });
@@ -232,8 +232,8 @@ void Service::Begin(const ScanKey& begin) {
 
 // @return whether the live run used this scan too, as far as is known
 bool Service::FollowScript(const ScanKey& key) {
-  if (!given_.script) return true;
-  const auto& stretches = given_.script->stretches;
+  if (!context_.script) return true;
+  const auto& stretches = context_.script->stretches;
   const auto is_reached = [&](std::size_t i) {
     if (key == stretches[i].first) return true;
     // Where it begins in the past of the one before, with its very first scan alone.
@@ -253,9 +253,9 @@ bool Service::FollowScript(const ScanKey& key) {
 
 // Of people, and such as people gave before the lidar, the navigator or this process began anew. A script has both.
 std::vector<Acknowledgement> Service::TakeAcknowledgements(const ScanInput& input, const Picture& picture) {
-  if (given_.script) {
-    const auto found = given_.script->acknowledged.find({input.time, input.seq});
-    if (found != given_.script->acknowledged.end()) acknowledgements_.assign(found->second.begin(), found->second.end());
+  if (context_.script) {
+    const auto found = context_.script->acknowledged.find({input.time, input.seq});
+    if (found != context_.script->acknowledged.end()) acknowledgements_.assign(found->second.begin(), found->second.end());
   } else {
     const auto kept = memory_->kept.Take(input.end_time, input.datum, memory_->look_out.alerts(), picture.tracks);
     acknowledgements_.insert(acknowledgements_.end(), kept.begin(), kept.end());
@@ -273,12 +273,12 @@ std::vector<Acknowledgement> Service::TakeAcknowledgements(const ScanInput& inpu
 }
 
 std::vector<Order> Service::TakeOrders(const ScanInput& input) {
-  if (given_.script) {
-    const auto found = given_.script->orders.find({input.time, input.seq});
-    if (found != given_.script->orders.end()) orders_ = found->second;
+  if (context_.script) {
+    const auto found = context_.script->orders.find({input.time, input.seq});
+    if (found != context_.script->orders.end()) orders_ = found->second;
   } else if (memory_->picture != nullptr) {
     const auto kept = memory_->kept_names.Take(label_->end_time, label_->datum, memory_->picture->tracks, memory_->look_out.names());
-    // What the process before left is from a file.
+    // The alerts that the process before left come from a file.
     std::ranges::copy_if(kept, std::back_inserter(orders_), [](const Order& order) { return !messages::FaultOf(ToMessage(order)); });
   }
   auto taken = std::exchange(orders_, {});
@@ -290,7 +290,7 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
   return taken;
 }
 
-// What of the guard zone nobody looks into is an alert like another: decided by the scans, so that a replay gives the same.
+// A part of the guard zone that nobody looks into is an alert like another: decided by the scans, so that a replay gives the same.
 std::optional<Danger> Service::LookAtZone(const ScanInput& input) {
   auto& zone_sight = memory_->zone_sight;
   if (input.sweep) zone_sight.Update(input.end_time, *input.sweep);
@@ -309,15 +309,15 @@ void Service::TellOfZone(alerts_t& message) const {
 }
 
 // Live only: for the process that is started when this one is gone.
-void Service::Leave(const alerts_t& message, const Picture& picture) const {
-  if (!given_.leave) return;
+void Service::HandOver(const alerts_t& message, const Picture& picture) const {
+  if (!context_.hand_over) return;
   Picture some;
   std::ranges::copy_if(picture.tracks, std::back_inserter(some.tracks), [&message](const Track& track) {
     return std::ranges::binary_search(message.named_track_id, track.id) || std::ranges::any_of(message.alerts, [&track](const alert_t& alert) {
              return alert.track_id == track.id && alert.state == alert_t::STATE_ACKNOWLEDGED;
            });
   });
-  given_.leave(message, ToMessages(*label_, some, bus::kMaxMessageBytes).front());
+  context_.hand_over(message, ToMessages(*label_, some, bus::kMaxMessageBytes).front());
 }
 
 // With the number of the last scan, and the alerts as they were.

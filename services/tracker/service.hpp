@@ -29,23 +29,23 @@
 
 namespace lookout::tracker {
 
-/// What is known of the input beforehand. Live: nothing.
-struct Given {
+/// Facts of the input, known beforehand. Live: none.
+struct RunContext {
   Gatherer::Sources sources = {};
-  std::optional<Script> script = {};                                 // of the live run that is replayed, where its log holds ALERTS
-  std::optional<Legacy> before = {};                                 // live: of the process before
-  std::function<void(const alerts_t&, const tracks_t&)> leave = {};  // live: after each scan, for the process behind
+  std::optional<Script> script = {};                                     // of the live run that is replayed, where its log holds ALERTS
+  std::optional<Legacy> before = {};                                     // live: of the process before
+  std::function<void(const alerts_t&, const tracks_t&)> hand_over = {};  // live: after each scan, for the process behind
 };
 
 class Service {
  public:
-  Service(bus::Bus& bus, const Params& params, Given given = {});
+  Service(bus::Bus& bus, const Params& params, RunContext context = {});
 
   /// Live only: host time has come so far. Ten times a second or more.
   void AdvanceTo(Utime host_time);
 
-  /// End of input: what waits is used as it is; where a live run is replayed, as far as that used it. A live process that is stopped does not call
-  /// it: what it would make of half a scan no replay, which hears the rest of it, could know.
+  /// End of input: waiting scans are used as they are; where a live run is replayed, as far as that used them. A live process that is stopped does
+  /// not call it: its result of half a scan no replay, which hears the rest of it, could know.
   void Finish();
 
   /// Scans that wait for POSE, LIDAR_SCAN or SEGMENTS.
@@ -92,7 +92,7 @@ class Service {
   std::vector<Order> TakeOrders(const ScanInput& input);
   std::optional<Danger> LookAtZone(const ScanInput& input);
   void TellOfZone(alerts_t& message) const;
-  void Leave(const alerts_t& message, const Picture& picture) const;
+  void HandOver(const alerts_t& message, const Picture& picture) const;
   void SendWatch();
 
   static constexpr auto kCountNames =
@@ -102,7 +102,7 @@ class Service {
 
   bus::Bus& bus_;
   Params params_;
-  Given given_;
+  RunContext context_;
   Gatherer gatherer_;
   messages::PartAssembler<obstacles_t> obstacles_parts_;
   messages::PartAssembler<lidar_scan_t> beams_parts_;

@@ -23,7 +23,7 @@
 
 namespace lookout::tracker {
 
-/// What OBSTACLES did not say of an obstacle that is left out.
+/// Values that OBSTACLES did not hold of an obstacle that is left out.
 struct LeftOut {
   std::int64_t num_not_placed = 0;          // in the vessel frame only
   std::int64_t num_without_covariance = 0;  // not known
@@ -50,7 +50,7 @@ ScanKey KeyOf(const Message& message) {
 Acknowledgement ToAcknowledgement(const alert_ack_t& message);
 alert_ack_t ToMessage(const Acknowledgement& acknowledgement);
 
-/// What TRACKS and ALERTS say of their scan.
+/// The members of TRACKS and ALERTS about their scan.
 struct ScanLabel {
   ScanKey key;
   ScanKey begin;  // scan at which the process began
@@ -67,7 +67,7 @@ std::vector<tracks_t> ToMessages(const ScanLabel& scan, const Picture& picture, 
 Order ToOrder(const order_t& message);
 order_t ToMessage(const Order& order);
 
-/// What ALERTS of one scan say.
+/// The values in ALERTS of one scan.
 struct AlertsTold {
   std::span<const Alert> alerts;  // the gravest first
   std::vector<Acknowledgement> acknowledged = {};

@@ -19,10 +19,11 @@ struct Sources {
   std::vector<std::filesystem::path> capture_files;  // in the order in which they are read
   double capture_speed = 1.0;                        // 0 = as fast as possible
   std::string bind_address;
-  std::string interface;                              // empty = any
-  std::string multicast_group;                        // empty = none
-  std::vector<std::string> allowed_source_addresses;  // empty = all; as inet_ntop writes them, to be compared as texts; what is no address stays
-  std::string bpf_filter;                             // empty = made of the ports
+  std::string interface;        // empty = any
+  std::string multicast_group;  // empty = none
+  std::vector<std::string>
+      allowed_source_addresses;  // empty = all; as inet_ntop writes them, to be compared as texts; a text that is no address stays
+  std::string bpf_filter;        // empty = made of the ports
   int receive_buffer_bytes = 0;
 };
 
@@ -39,7 +40,7 @@ struct Params {
 /// @throws config::ConfigError with every fault. Addresses, captures and the filter are texts here: LoadChecked checks them for who opens sources
 Params LoadParams(const std::filesystem::path& config_folder);
 
-/// The same, but fields that do not go together are added to `faults`, each as a line: for who has more to check and tells all at once.
+/// The same, but fields that do not go together are added to `faults`, each as a line: for a caller that has more to check and tells all at once.
 ///
 /// @throws config::ConfigError when the file is not of the schema
 Params LoadParams(const std::filesystem::path& config_folder, std::vector<std::string>& faults);

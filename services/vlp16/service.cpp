@@ -54,7 +54,7 @@ void Service::OnDatagram(Utime host_time, int udp_port, Bytes payload, const Sen
   if (const auto bundle = bundler_.Add(host_time, udp_port, payload)) PublishAndConsume(*bundle);
 }
 
-// What the bundler refuses by itself has no part in the lock.
+// A packet that the bundler refuses by itself has no part in the lock.
 bool Service::IsTaken(Utime host_time, int udp_port, const Sender& sender, Bytes payload) {
   const bool is_data = udp_port == params_.data_port && payload.size() == format::kDataPacketSizeBytes;
   const bool is_position = udp_port == params_.position_port && payload.size() == format::kPositionPacketSizeBytes;
@@ -70,7 +70,7 @@ bool Service::IsTaken(Utime host_time, int udp_port, const Sender& sender, Bytes
 void Service::NoteHolder(Utime host_time, Stream stream, const std::optional<Sender>& before) {
   const auto& holder = *lock_.holder(stream);
   if (before && stream == Stream::kData) ++num_lidar_changes_;
-  // Whoever was refused until now is the lidar.
+  // The refused sender has become the lidar.
   if (refusal_ && refusal_->sender == holder) refusal_.reset();
   if (holder.address.empty() || stream != Stream::kData || !on_notice_) return;
   std::string line = "uses the lidar at " + ToText(holder);
@@ -95,7 +95,7 @@ void Service::NoteRefused(Utime host_time, Stream stream, const Sender& sender, 
   if (on_notice_) on_notice_(ForeignComplaint());
 }
 
-// Who sends besides the lidar, for people; empty when nobody does.
+// The sender besides the lidar, for people; empty when there is none.
 std::string Service::ForeignComplaint() const {
   if (!refusal_) return {};
   const auto& [sender, stream, is_valid, time, began] = *refusal_;
@@ -207,7 +207,7 @@ void Service::NoteClock(const ClockReading& clock) {
   if (on_notice_) on_notice_(line);
 }
 
-// What is wrong, for people; empty when nothing is.
+// The fault, for people; empty when there is none.
 std::string Service::Complaint() const {
   auto own = OwnComplaint();
   // A clock that was set back must not keep an old refusal alive.
@@ -216,7 +216,7 @@ std::string Service::Complaint() const {
   return own.empty() ? ForeignComplaint() : own + "; " + ForeignComplaint();
 }
 
-// What is wrong with the lidar that is taken.
+// The fault of the lidar in use.
 std::string Service::OwnComplaint() const {
   if (params_.input == Input::kOutside && silent_since_ && now_ - *silent_since_ >= kSilence) {
     const auto seconds = std::to_string(std::chrono::floor<std::chrono::seconds>(now_ - *silent_since_).count());

@@ -73,7 +73,7 @@ class Service {
   std::int64_t out_of_stream_per_s_ = 0;
   std::optional<Utime> second_began_;
   std::function<void(const std::string&)> on_notice_;
-  // Who was refused last, by what, and what the journal last said of it.
+  // The last refused sender, the reason, and the last line of the journal about it.
   struct Refusal {
     Sender sender;
     Stream stream = Stream::kData;

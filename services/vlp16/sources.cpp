@@ -78,7 +78,7 @@ std::optional<io::IpAddress> BoundAddress(const Sources& sources) {
   return io::ParseIpAddress(sources.bind_address.substr(0, sources.bind_address.find('%')));
 }
 
-// What is text in the params and must be right before anything starts.
+// Texts of the params that must be right before anything starts.
 void CheckSources(const std::filesystem::path& config_folder, const Sources& sources, std::vector<std::string>& faults) {
   const auto file = config_folder / "vlp16.txtpb";
   const auto require = [&](bool is_fine, const char* field, const std::string& reason, std::size_t index = 0) {

@@ -131,7 +131,7 @@ add_before tools/replay/stage.cpp '^#include "services/georeferencer/params.hpp"
 add_before tools/replay/stage.cpp '^      [{]"segmenter", ' \
   '      {"echo", [](const fs::path& folder) { echo::LoadParams(folder); }, Make<PlainStage<echo::Service, echo::LoadParams>>},'
 add_before README.md '^[|] \[lookout-plotter\]' '| [lookout-echo](services/echo/README.md) | POSE | ECHO |'
-add_before deploy/README.md '^[|] plotter [|]' '| echo | poses again | POSE | ECHO | none | checks the config | 10 |'
+add_before deploy/README.md '^[|] plotter [|]' '| echo | poses again | none | checks the config | 10 |'
 add_before lcmtypes/README.md '^[|] gnss_fix_t [|]' '| echo_t | ECHO | a pose again |'
 add_before lcmtypes/README.md '^[|] HEALTH [|]' '| ECHO | echo_t | echo | 50 | 100 | |'
 add_before tests/golden/fingerprints.txt '^gnss_fix_t ' 'echo_t 0000000000000000'

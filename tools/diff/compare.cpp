@@ -20,7 +20,7 @@ namespace lookout::diff {
 
 namespace {
 
-// Longer strings are cut in what is shown.
+// Longer strings are cut in the output.
 constexpr std::size_t kMaxShownLetters = 60;
 
 template <typename T>

@@ -131,7 +131,7 @@ class ChannelComparison {
     std::size_t next = 0;
   };
 
-  // Of events that are larger than what is read at once.
+  // Of events larger than one read.
   std::optional<Difference> CompareRests(const bus::LogEvent& a, const bus::LogEvent& b) const {
     if (a.num_data_bytes != b.num_data_bytes) return Difference{"size", std::to_string(a.num_data_bytes), std::to_string(b.num_data_bytes)};
     constexpr std::size_t kPieceBytes = 1024UL * 1024;
@@ -157,8 +157,8 @@ class ChannelComparison {
            header_a->seq == header_b->seq;
   }
 
-  // Of what is left in one log when the other has come to its end: messages not before the other's last one (parts of a scan have one time). Where
-  // the pairs were not found, or the other log has none at all, nobody knows.
+  // Of messages left in one log when the other has come to its end: those not before the other's last one (parts of a scan have one time). Where the
+  // pairs were not found, or the other log has none at all, nobody knows.
   std::int64_t NumBehind(Side& side, const Side& other) const {
     if (side.NumLeft() == 0 || num_in_vain_ > 0 || other.places == nullptr) return 0;
     const auto first = bus::ReadHeader(side.Read(0).bytes);

@@ -1,4 +1,4 @@
-// What lookout-doctor says: one finding per thing that it checked. Pure functions from observations to findings, and findings as text.
+// The findings of lookout-doctor: one for each thing that it checked. Pure functions from observations to findings, and findings as text.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@ enum class Grade { kOk, kWarning, kFault };
 struct Finding {
   Grade grade = Grade::kOk;
   std::string subject;  // one word
-  std::string text;     // what was found
-  std::string cure;     // what to do; empty where nothing is wrong
+  std::string text;     // the finding
+  std::string cure;     // advice; empty where nothing is wrong
 };
 
 using Findings = std::vector<Finding>;
@@ -64,7 +64,7 @@ Findings CheckClocks(const Observations& seen);
 /// Position, heading, roll and pitch.
 Findings CheckNavigation(const Observations& seen);
 
-/// Where lidar and antenna are and where the lidar looks, so that who stands on the boat sees a wrong sign.
+/// The places of lidar and antenna and the direction of the lidar, so that a person on the boat sees a wrong sign.
 Findings CheckMounting(const ConfigSeen& config);
 
 /// Whether the lidar can look into all of the guard zone, by the config, and does, by the scans.
@@ -73,7 +73,7 @@ Findings CheckGuardZone(const Observations& seen);
 /// Free space for logs.
 Findings CheckDisk(const DiskSeen& disk);
 
-/// HEALTH of each process; obstacles; whether there is a look-out, and what it warns of.
+/// HEALTH of each process; obstacles; whether there is a look-out, and its alerts.
 Findings CheckProcesses(const Observations& seen);
 /// Of each output of the plotter: whether those to whom it sends take it.
 Findings CheckPlotter(const Observations& seen);

@@ -124,7 +124,7 @@ Finding CheckPackets(const Observations& seen) {
   return Ok(kLidarSubject, words);
 }
 
-// What a state of the lidar's clock means, and what to do; the locked one apart.
+// The meaning of a state of the lidar's clock, and advice; the locked one apart.
 struct ClockState {
   std::int32_t state;  // lidar_clock_t::STATE_...
   const char* text;

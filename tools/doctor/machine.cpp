@@ -101,7 +101,7 @@ std::map<std::uint64_t, std::string> HoldersOfSockets() {
   return holders;
 }
 
-// Where it is, or its nearest parent that is there: the recorder makes what is missing.
+// The folder, or its nearest parent that exists: the recorder makes missing ones.
 fs::path Existing(fs::path folder) {
   std::error_code error;
   while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
@@ -134,7 +134,7 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
     check(file_name, [&] { service.load(config_folder); });
   }
   check("vlp16.txtpb", [&] { seen.lidar = vlp16::LoadChecked(config_folder); });
-  // What other findings are made of. Faults of these files are told already.
+  // Values for other findings. Faults of these files are told already.
   const auto look = [](const std::function<void()>& load) { config::FaultList().Try(load); };
   look([&] { seen.navigation = navigator::LoadParams(config_folder); });
   look([&] { seen.tracker = tracker::LoadParams(config_folder); });
@@ -216,7 +216,7 @@ BuffersSeen ReadBuffers(const ConfigSeen& config) {
   buffers.by_default = granted();
   const int asked = static_cast<int>(buffers.asked);
   setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &asked, sizeof asked);
-  buffers.granted = granted() / 2;  // socket(7): the kernel doubles what is asked for, and tells that
+  buffers.granted = granted() / 2;  // socket(7): the kernel doubles the requested size, and tells that
   close(descriptor);
   return buffers;
 }
@@ -236,7 +236,7 @@ std::vector<InterfaceSeen> ReadInterfaces() {
     if (interface.address) interface.prefix_bits = PrefixBits(entry->ifa_netmask);
     interfaces.push_back(std::move(interface));
   }
-  // Each interface stands there once more for its link: that is told only where it has no address.
+  // Each interface stands there once more for its link: told only where it has no address.
   std::set<std::string> with_address;
   for (const auto& interface : interfaces) {
     if (interface.address) with_address.insert(interface.name);

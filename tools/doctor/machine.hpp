@@ -10,7 +10,7 @@
 
 namespace lookout::doctor {
 
-/// Every *.txtpb of the folder and every one that a process needs, each checked as its process does at its start. Never throws for what is in them.
+/// Every *.txtpb of the folder and every one that a process needs, each checked as its process does at its start. Never throws for their contents.
 ConfigSeen ReadConfig(const std::filesystem::path& config_folder);
 
 /// @param url  LCM address, as LcmBus takes it
@@ -26,7 +26,7 @@ struct SocketSeen {
 /// @param table  text of /proc/net/udp
 std::vector<SocketSeen> SocketsOfPort(const std::string& table, int port);
 
-/// Who listens to the port of the bus. What other users run is known by its user only.
+/// Listeners to the port of the bus. Only their own user knows the programs of other users.
 PortSeen ReadPort(const BusSeen& bus);
 
 /// The device by which an address goes: the longest match, of equal ones the least metric.
@@ -46,7 +46,7 @@ std::vector<InterfaceSeen> ReadInterfaces();
 /// Whether something steers this computer's clock (the kernel's state, as NTP and PPS set it).
 bool IsHostClockSet();
 
-/// What the page needs: its port, its token's file, its map, room.
+/// Needs of the page: its port, its token's file, its map, room.
 PageSeen ReadPage(const ConfigSeen& config);
 
 /// Of the log folder; the rate stays as it is in `seen`. A recorder that runs shows where a relative folder is.

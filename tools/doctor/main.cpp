@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
   bool has_fault = false;
   const int code = lookout::runtime::RunMain("doctor", [&] {
     if (options.check_only) {
-      // What each process would find at its start, of all files at once.
+      // The faults that each process would find at its start, of all files at once.
       lookout::config::FaultList faults;
       for (const auto& [file, lines] : lookout::doctor::ReadConfig(options.config_folder).files) {
         for (const auto& fault : lines) faults.Add(fault);

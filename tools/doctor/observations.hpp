@@ -1,4 +1,4 @@
-// What was observed, in plain values, so that each check can be tested without a boat.
+// Observations, in plain values, so that each check can be tested without a boat.
 #pragma once
 
 #include <cstdint>
@@ -51,15 +51,15 @@ struct BusSeen {
 /// The port of the bus, which LCM opens on every address of the computer.
 struct PortSeen {
   bool is_closed = false;  // by lookout-firewall: to other computers, but for the interface of the bus
-  // Who listens to it and is not of Lookout: "lcm-logger (pid 17)", "a program of user pi". No filter stands in front of it.
+  // Programs that listen to it and are not Lookout's: "lcm-logger (pid 17)", "a program of user pi". No filter stands in front of them.
   std::vector<std::string> without_filter;
 };
 
 /// Receive buffers of UDP sockets, bytes.
 struct BuffersSeen {
-  std::int64_t granted = 0;     // to who asks for `asked`
+  std::int64_t granted = 0;     // to a socket that asks for `asked`
   std::int64_t asked = 0;       // by Lookout's processes
-  std::int64_t by_default = 0;  // to who asks for none
+  std::int64_t by_default = 0;  // to a socket that asks for none
 };
 
 /// One address of an interface of this computer; an interface without any has `address` empty.
@@ -84,7 +84,7 @@ struct LidarSeen {
   std::string complaint;  // of the process, or of the same code inside the doctor; empty = none
   // Datagrams to the data port by numeric source; kItself with source UDP alone.
   std::map<std::string, std::int64_t> num_by_sender;
-  std::int64_t num_packets = 0;  // data packets, and the times that who received them put on the first and the last
+  std::int64_t num_packets = 0;  // data packets, and the receiver's times of the first and the last
   Utime first{};
   Utime last{};
   Utime heard_last{};   // by this computer's clock, which may not be the one of `last`
@@ -131,7 +131,7 @@ struct LookOutSeen {
   Utime alerts_heard{};
 };
 
-/// What the page needs of this computer, as far as this user may look.
+/// Needs of the page on this computer, as far as this user may look.
 struct PageSeen {
   bool is_port_taken = false;    // by anybody; ours while the page runs here
   std::string token_fault;       // empty: it is right, or will be made

@@ -21,8 +21,8 @@ constexpr std::size_t kSubjectWidth = 11;
 constexpr std::size_t kWordsWidth = 100;
 constexpr const char* kArrow = "-> ";
 
-// Lines of at most kWordsWidth, each but the first behind `indent`. What comes from outside (a reason in HEALTH) may hold anything: only what can
-// be printed is.
+// Lines of at most kWordsWidth, each but the first behind `indent`. Foreign text (a reason in HEALTH) may hold anything: only its printable
+// characters are shown.
 std::string Wrapped(const std::string& text, const std::string& indent) {
   std::string spaced = text;
   std::ranges::replace_if(

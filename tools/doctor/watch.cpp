@@ -33,7 +33,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// HEALTH comes once a second: who is silent for longer does not run.
+// HEALTH comes once a second: a process that is silent for longer does not run.
 constexpr std::chrono::milliseconds kHealthWait(1500);
 constexpr std::chrono::milliseconds kPoll(5);
 // lcm-log: sync word, number, time, two lengths.
@@ -45,7 +45,7 @@ std::string LidarService() { return std::string(bus::PublisherName(bus::kLidarSc
 // Taken from one source before the others get their turn: 100 ms of packets in dual return.
 constexpr int kMaxDatagramsPerPoll = 150;
 
-// Reads the lidar's datagrams as lookout-vlp16 does, and tells on `bus` what it would tell.
+// Reads the lidar's datagrams as lookout-vlp16 does, and publishes on `bus` as it would.
 class OwnLidar {
  public:
   /// @throws std::runtime_error when a port or the interface cannot be opened
@@ -56,12 +56,12 @@ class OwnLidar {
     }
     for (const int port : {params.data_port, params.position_port}) {
       auto options = vlp16::ToUdpOptions(params.sources, port);
-      options.allowed_source_addresses.clear();  // whoever sends is to be seen; who may is decided here
+      options.allowed_source_addresses.clear();  // every sender is to be seen; which is allowed is decided here
       sources_.push_back(std::make_unique<io::UdpReceiver>(options));
     }
   }
 
-  /// Takes what waits. @param seen  gets senders and complaint
+  /// Takes waiting datagrams. @param seen  gets senders and complaint
   void Poll(Utime now, LidarSeen& seen) {
     const auto& allowed = params_.sources.allowed_source_addresses;
     const bool is_udp = params_.sources.kind == vlp16::Sources::Kind::kUdp;
@@ -195,7 +195,7 @@ class Watcher {
       while (memory_.HandleOnce()) {
       }
       if (lcm_) {
-        // Waits for one, then takes what came with it.
+        // Waits for one, then takes those that came with it.
         if (lcm_->HandleOnce(kPoll)) {
           const auto round_end = std::min(end, SteadyClock::now() + kPoll);
           while (SteadyClock::now() < round_end && lcm_->HandleOnce(std::chrono::milliseconds(0))) {

@@ -23,7 +23,7 @@ class Notes {
   /// @param clock  host time
   Notes(Observations& seen, std::function<Utime()> clock);
 
-  /// Subscribes what the lidar and the navigation say.
+  /// Subscribes the channels of lidar and navigation.
   void ListenTo(bus::Bus& bus, Via via);
 
   /// Subscribes what only a live bus has: HEALTH, OBSTACLES, TRACKS, ALERTS, and the size of all.

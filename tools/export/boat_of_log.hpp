@@ -1,4 +1,4 @@
-// What a log says of the boat: the config in RUN_INFO.
+// The boat of a log: the config in RUN_INFO.
 #pragma once
 
 #include <optional>

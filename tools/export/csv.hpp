@@ -1,4 +1,4 @@
-// Rows of comma separated values (RFC 4180, lines end in LF). Numbers never depend on the locale; what is unknown is an empty cell.
+// Rows of comma separated values (RFC 4180, lines end in LF). Numbers never depend on the locale; an unknown value is an empty cell.
 #pragma once
 
 #include <cstdint>

@@ -34,7 +34,7 @@ namespace {
 
 constexpr std::string_view kProgram = "lookout-export: ";
 
-// What was met on one of the sink's channels.
+// Messages on the sink's channels.
 struct Tally {
   bus::Channel channel;
   std::int64_t num_taken = 0;
@@ -45,7 +45,7 @@ struct Tally {
 
 std::string SpanFault(const Span& span) { return span.from_us && span.to_us && *span.from_us >= *span.to_us ? "--from is not before --to" : ""; }
 
-// @return what is wrong with the request; empty when nothing
+// @return the fault of the request; empty when there is none
 std::string Fault(const Request& request) {
   if (auto fault = OutputFault(request); !fault.empty()) return fault;
   if (auto fault = SpanFault(request.span); !fault.empty()) return fault;
@@ -56,7 +56,7 @@ std::string Fault(const Request& request) {
   return "";
 }
 
-// By their first events: a map is made in the order of time, and who gives its logs need not know it.
+// By their first events: a map is made in the order of time, whatever the order of the logs.
 std::vector<std::filesystem::path> InOrderOfTime(std::vector<std::filesystem::path> inputs) {
   std::vector<std::pair<Utime, std::filesystem::path>> by_time;
   by_time.reserve(inputs.size());
@@ -70,8 +70,8 @@ std::vector<std::filesystem::path> InOrderOfTime(std::vector<std::filesystem::pa
   return inputs;
 }
 
-// How much later, by more than can be, events were logged than what they tell was measured: of a log that was recorded while an old one was played.
-// By the first message of the table.
+// By how much, beyond what can be, events were logged later than they were measured: of a log that was recorded while an old one was played. By the
+// first message of the table.
 std::chrono::microseconds AgeOfMessages(const std::vector<std::filesystem::path>& inputs, const std::string& channel) {
   constexpr std::chrono::minutes kUsual(1);
   for (const auto& input : inputs) {
@@ -120,7 +120,7 @@ void Tell(std::ostream& errors, const Sink& sink, const std::vector<Tally>& tall
   for (const auto& remark : sink.Remarks()) errors << kProgram << remark << '\n';
 }
 
-// Whether what is asked for has a place on the earth, and why not.
+// Whether the requested table has a place on the earth, and why not.
 class PlacedRows {
  public:
   explicit PlacedRows(const Request& request) : is_tracks_(request.table == "tracks"), is_asked_(is_tracks_ || request.table == "obstacles") {}
@@ -220,7 +220,7 @@ int Export(const Request& request, const Output& row, std::ostream& errors) {
     const auto of_this = tallies.front().num_of_other_type > 0 ? " of this version's type" : "";
     throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name) + of_this + (when.empty() ? "" : " " + when));
   }
-  if (request.format != "csv" && text.empty()) {  // the end of what was written before is not empty
+  if (request.format != "csv" && text.empty()) {  // the end of the written text is not empty
     throw std::runtime_error(request.scan ? "the input holds no scan " + std::to_string(*request.scan) : std::string(row.when_empty));
   }
   output.Write(text);

@@ -25,8 +25,8 @@ struct Request {
   std::optional<std::filesystem::path> config = std::nullopt;  // merges: the boat's folder, by which scans are segmented again
   std::string from = {};                                       // csv and maps: as FindTime; empty = the start
   std::string to = {};                                         // the first time that is not in it; empty = the end
-  Span span = {};                                              // csv and maps: what was measured within; of `from` and `to` where they are given
-  std::optional<Circle> near = std::nullopt;                   // csv and maps of obstacles, tracks, pose: what lies within
+  Span span = {};                                              // csv and maps: times of measurement; of `from` and `to` where they are given
+  std::optional<Circle> near = std::nullopt;                   // csv and maps of obstacles, tracks, pose: places within
   std::FILE* progress = nullptr;                               // for people, where the output is a file; nullptr: silent
 };
 
@@ -36,7 +36,7 @@ inline constexpr int kExitUsage = 2;   // wrong command line or config
 
 /// Ends as failed, without output file, when the program is asked to stop (io::CatchStopSignals).
 ///
-/// @param errors  gets what went wrong and what was skipped, a line each
+/// @param errors  gets faults and skipped data, a line each
 /// @return exit code
 int Run(const Request& request, std::ostream& errors);
 

@@ -1,4 +1,4 @@
-// What a map holds, whatever its format: things with a place, a time and properties.
+// Features of a map, whatever its format: things with a place, a time and properties.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace lookout::exporter {
 
-/// Printed as in a table; what is not known (not finite, Empty) is null in GeoJSON and is left out elsewhere.
+/// Printed as in a table; an unknown value (not finite, Empty) is null in GeoJSON and is left out elsewhere.
 using Value = std::variant<Empty, std::int64_t, Fixed, Shortest, Direction, std::string>;
 
 struct Property {
@@ -41,7 +41,7 @@ class MapWriter {
 
   virtual void Begin(std::string& text) = 0;
 
-  /// What the format has no place for is left out. @return whether it was written
+  /// A feature that the format has no place for is left out. @return whether it was written
   virtual bool Append(const Feature& feature, std::string& text) = 0;
 
   virtual void End(std::string& text) = 0;

@@ -17,7 +17,7 @@ std::string Attributes(const MapPlace& place) {
   AppendPlace(place, ' ', longitude_and_latitude);
   const auto blank = longitude_and_latitude.find(' ');
   const auto longitude = longitude_and_latitude.substr(0, blank);
-  // GPX has no longitude of 180: it goes from -180 to what is below.
+  // GPX has no longitude of 180: its longitudes go from -180 to less than 180.
   return fmt::format("lat=\"{}\" lon=\"{}\"", longitude_and_latitude.substr(blank + 1), longitude == "180.000000000" ? "179.999999999" : longitude);
 }
 

@@ -29,7 +29,7 @@ std::int64_t Step(std::int64_t from_ndeg, std::int64_t to_ndeg) {
   return step > kHalfCircle ? step - 2 * kHalfCircle : step <= -kHalfCircle ? step + 2 * kHalfCircle : step;
 }
 
-// What a walk along a line meets, in order.
+// Crossings and corners along a line, in order.
 struct Walked {
   // A stretch between two crossings of the 180th meridian; all on one side of it.
   struct Stretch {

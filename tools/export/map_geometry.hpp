@@ -12,7 +12,7 @@
 
 namespace lookout::exporter {
 
-/// A place on the earth in whole 1e-9 deg (0.1 mm), as it is written: what is compared and cut is what stands in the file.
+/// A place on the earth in whole 1e-9 deg (0.1 mm), as it is written: the numbers of the file are compared and cut.
 struct MapPlace {
   std::int64_t longitude_ndeg = 0;  // -180e9 to 180e9
   std::int64_t latitude_ndeg = 0;   // -90e9 to 90e9
@@ -26,7 +26,7 @@ MapPlace ToMapPlace(const GeodeticPlace& place);
 /// Appends "longitude<separator>latitude" in degrees with 9 decimals.
 void AppendPlace(const MapPlace& place, char separator, std::string& text);
 
-/// What stands on a map, in parts that do not cross the 180th meridian.
+/// A shape on a map, in parts that do not cross the 180th meridian.
 struct Geometry {
   enum class Kind { kPoint, kPoints, kLine, kPolygon };
 
@@ -70,7 +70,7 @@ class MapOfDatum {
   /// Whether the two are the same map.
   bool IsOf(const GeodeticPlace& datum) const;
 
-  /// Error: below 1 cm at 100 km from the datum, for what lies within 0.5 m of its height.
+  /// Error: below 1 cm at 100 km from the datum, for places within 0.5 m of its height.
   MapPlace PlaceAt(const Eigen::Vector2d& p_map_m) const;
 
   /// The corners of an outline, with more of them along its sides where it lies so near to a pole that meridians fan out.
@@ -91,7 +91,7 @@ class MapOfDatum {
   LocalFrame frame_;
 };
 
-/// What lies within a radius of a place.
+/// A circle around a place.
 class Near {
  public:
   /// @param place     latitude -90 to 90

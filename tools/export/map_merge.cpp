@@ -33,13 +33,13 @@ bool AreOnePlace(const MapThing& one, const MapThing& other, double apart_m) {
   return apart_m <= SamePlaceM(one.deviation_m, other.deviation_m) && AreOfOneThing(one.length_m, other.length_m);
 }
 
-// By what was seen last; what is gone, before what is not.
+// By when it was last seen; gone things before the others.
 bool IsOlder(const MapThing& one, const MapThing& other) {
   return std::tuple(!one.gone, one.seen, one.latitude_deg, one.longitude_deg) <
          std::tuple(!other.gone, other.seen, other.latitude_deg, other.longitude_deg);
 }
 
-// What was seen last says where it is and how it looks.
+// The last sighting gives place and look.
 MapThing Joined(MapThing older, MapThing newer) {
   if (older.seen > newer.seen) std::swap(older, newer);
   newer.first = std::min(newer.first, older.first);
@@ -98,7 +98,7 @@ void MapMerge::JoinSeen(std::vector<MapThing> seen) {
   by_latitude.reserve(things_.size());
   for (const auto& [number, thing] : things_) by_latitude.emplace_back(thing.latitude_deg, number);
   std::ranges::sort(by_latitude);
-  std::vector<std::tuple<double, std::int64_t, std::size_t>> pairs;  // distance, number, index of what was seen
+  std::vector<std::tuple<double, std::int64_t, std::size_t>> pairs;  // distance, number, index of the seen thing
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const double reach_deg = kMostPairM / kLeastDegM;
     for (auto near = std::ranges::lower_bound(by_latitude, std::pair(seen[i].latitude_deg - reach_deg, std::int64_t{0}));

@@ -15,13 +15,13 @@
 
 namespace lookout::exporter {
 
-/// Processes in the order of time. A process that is over is joined to the map: its things and those of the map are one where they lie within
-/// SamePlaceM and are of about one length, nearest pairs first; two things of one process never are. A day's scans are the sum of those of its
-/// processes. Land is merged cell by cell, on the grid of the earth.
+/// Processes in the order of time. A finished process is joined to the map: its things and those of the map are one where they lie within SamePlaceM
+/// and are of about one length, nearest pairs first; two things of one process never are. A day's scans are the sum of those of its processes. Land
+/// is merged cell by cell, on the grid of the earth.
 class MapMerge {
  public:
   /// @param begin  the scan at which the process of the tracker began
-  /// @param sight  nullptr: what could have been seen is not known
+  /// @param sight  nullptr: sight is not known
   void Add(const tracker::ScanKey& begin, const StandingScan& scan, const tracker::Sight* sight);
 
   /// Middles of the cells of land that TRACKS told after a scan. A cell that was told for 10 s of a day is land.

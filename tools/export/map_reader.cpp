@@ -116,7 +116,7 @@ Taken MapReader::TakePose(Bytes bytes) {
 }
 
 Taken MapReader::TakeBoat(Bytes bytes) {
-  // What another boat, or another mounting, was like says nothing of this one.
+  // The beams of another boat, or of another mounting, say nothing of this one.
   boat_.reset();
   max_range_m_.reset();
   sight_.reset();

@@ -24,7 +24,7 @@
 namespace lookout::exporter {
 
 /// TRACKS of each scan, in their order. The first of each second waits for its LIDAR_SCAN and POSE, which say, with the mounting of the lidar in
-/// RUN_INFO, what could have been seen; it does not wait for ever, and a log without them has no sight.
+/// RUN_INFO, which water was looked through; it does not wait for ever, and a log without them has no sight.
 ///
 /// A scan that was read before, as of a log that is there twice, is left out.
 class MapReader {
@@ -36,7 +36,7 @@ class MapReader {
   /// End of the input.
   void Finish();
 
-  /// Scans of which is known what could have been seen.
+  /// Scans with known sight.
   std::int64_t num_looks() const { return num_looks_; }
 
  private:
@@ -65,7 +65,7 @@ class MapReader {
   std::optional<tracker::Sight> sight_;  // of the boat in RUN_INFO
   std::deque<Waiting> waiting_;
   std::deque<std::pair<tracker::ScanKey, tracker::Sweep>> sweeps_;  // of the first scans of seconds
-  tracker::ScanInput looked_;                                       // what sight_ looks at
+  tracker::ScanInput looked_;                                       // the scan of sight_
   std::optional<std::int64_t> tracks_second_;
   std::optional<std::int64_t> beams_second_;
   std::map<tracker::ScanKey, tracker::ScanKey> newest_;  // of each process: the last scan

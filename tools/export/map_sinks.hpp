@@ -20,16 +20,15 @@ struct Scans {
 /// OBSTACLES, message by message: needs as much memory for a day as for a scan. Each that has a place gives a point (`obstacle`), its outline
 /// (`outline`; of land `waterline`, an open line) and the ellipse of its place (`ellipse`, 95 %).
 ///
-/// @param near  what lies outside is left out; Finish throws std::runtime_error when nothing is left
+/// @param near  obstacles outside are left out; Finish throws std::runtime_error when none is left
 std::unique_ptr<Sink> MakeObstacleMapSink(std::unique_ptr<MapWriter> writer, const std::optional<Circle>& near, const Scans& scans);
 
-/// The track of the boat out of POSE (`own_track`: a line for each stretch of one status, a place each 0.5 m or 10 s); with tracks also what the
-/// tracker made of the log: each confirmed track where it was last (`track`, `outline`, `ellipse`), the way of what has moved (`way`), land that was
-/// remembered (`waterline`), and the places of the boat where alerts came up (`alert`). Of one scan: what was known after it, and the boat
-/// (`own_place`) in place of its track.
+/// The track of the boat out of POSE (`own_track`: a line for each stretch of one status, a place each 0.5 m or 10 s); with tracks also the tracker's
+/// results: each confirmed track where it was last (`track`, `outline`, `ellipse`), the way of moving ones (`way`), remembered land (`waterline`),
+/// and the places of the boat where alerts came up (`alert`). Of one scan: the tracks after it, and the boat (`own_place`) in place of its track.
 ///
 /// @param scans  all without tracks
-/// @param near   what lies outside is left out; Finish throws std::runtime_error when nothing is left
+/// @param near   features outside are left out; Finish throws std::runtime_error when none is left
 std::unique_ptr<Sink> MakeTrackMapSink(std::unique_ptr<MapWriter> writer, bool has_tracks, const std::optional<Circle>& near, const Scans& scans);
 
 }  // namespace lookout::exporter

@@ -34,7 +34,7 @@ std::optional<segmenter::Scan> ToScan(const ScanMessages& messages) {
 // "gap_m +1.2, hidden +0.4": at most three, the greatest first.
 std::string Greatest(std::span<const std::string_view> names, std::span<const float> terms, float sign) {
   constexpr std::size_t kMost = 3;
-  constexpr float kLeast = 0.05F;  // what would be said as 0.0
+  constexpr float kLeast = 0.05F;  // a smaller number would be printed as 0.0
   std::vector<std::size_t> order(terms.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t feature) { return sign * terms[feature]; });

@@ -46,7 +46,7 @@ struct MergedScan {
   std::map<std::int32_t, segmenter::PieceFeatures> features_of_segment;
 };
 
-/// Segments scans as lookout-segmenter does, and keeps what it decided by.
+/// Segments scans as lookout-segmenter does, and keeps the evidence of its decisions.
 class MergeRecorder {
  public:
   /// Precondition: the method is LOOKOUT.

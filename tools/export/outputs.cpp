@@ -159,7 +159,7 @@ std::string OutputFault(const Request& request) {
   const auto* const row = FindOutput(request.table, request.format);
   if (row == nullptr) return "--format " + request.format + " is for --table " + Joined(TablesOf(request.format, kNoOption)) + " only";
 
-  struct Given {
+  struct GivenOption {
     Option option;
     bool is_given;
     std::string_view names;
@@ -167,9 +167,10 @@ std::string OutputFault(const Request& request) {
   const bool is_part = !request.span.IsAll() || !request.from.empty() || !request.to.empty();
   const bool is_map = std::ranges::find(kMapFormats, request.format, &MapFormat::name) != kMapFormats.end();
   for (const auto& [option, is_given, option_names] :
-       {Given{kScanOption, request.scan.has_value(), "--scan is"}, Given{kLastScanOption, is_map && request.is_last_scan, "--scan last is"},
-        Given{kAllScansOption, request.all_scans, "--scan all is"}, Given{kSpanOption, is_part, "--from and --to are"},
-        Given{kNearOption, request.near.has_value(), "--near is"}, Given{kConfigOption, request.config.has_value(), "--config is"}}) {
+       {GivenOption{kScanOption, request.scan.has_value(), "--scan is"},
+        GivenOption{kLastScanOption, is_map && request.is_last_scan, "--scan last is"},
+        GivenOption{kAllScansOption, request.all_scans, "--scan all is"}, GivenOption{kSpanOption, is_part, "--from and --to are"},
+        GivenOption{kNearOption, request.near.has_value(), "--near is"}, GivenOption{kConfigOption, request.config.has_value(), "--config is"}}) {
     if (is_given && (row->options & option) == 0) return std::string(option_names) + " for " + PlacesText(option) + " only";
   }
   if ((row->options & kConfigOption) != 0 && !request.config) return "--table " + request.table + " needs --config: scans are segmented again by it";

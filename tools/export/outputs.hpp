@@ -1,4 +1,4 @@
-// What lookout-export can write: a row for each table in each of its formats. --help, the refusals and the makers come from these rows.
+// The outputs of lookout-export: a row for each table in each of its formats. --help, the refusals and the makers come from these rows.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ struct Output {
   /// @throws config::ConfigError
   std::unique_ptr<Sink> (*make)(const Request& request);
   bool is_by_time = false;                                  // reads its logs in the order of their times, not as they are given
-  std::string_view when_empty = "the input holds no scan";  // what the log lacks where nothing comes of it
+  std::string_view when_empty = "the input holds no scan";  // the missing part of the log where the output is empty
 };
 
 /// All rows: of a table those of its formats, csv first.
@@ -47,7 +47,7 @@ std::string FormatsText();
 /// "csv of every table but map; kml and gpx of obstacles": where an option can be given.
 std::string PlacesText(Option option);
 
-/// What is wrong with table, format and the options of the request; empty when nothing.
+/// The fault of table, format and options of the request; empty when there is none.
 std::string OutputFault(const Request& request);
 
 }  // namespace lookout::exporter

@@ -14,7 +14,7 @@
 
 namespace lookout::exporter {
 
-/// Bounds of a map: what is beyond is left out.
+/// Bounds of a map: things and cells beyond are left out.
 inline constexpr std::size_t kMostMapThings = 4000;
 inline constexpr std::size_t kMostMapTiles = 40'000;
 inline constexpr std::size_t kMostMapCells = 400'000;
@@ -100,8 +100,7 @@ GeodeticPlace MiddleOf(const Cell& cell);
 
 }  // namespace earth_grid
 
-/// Distance within which two places of what stands are the same place: by both deviations, and by how far what is seen of a thing changes; at most 5
-/// m.
+/// Distance within which two places of a standing thing are the same place: by both deviations, and by the changes of its visible part; at most 5 m.
 double SamePlaceM(double deviation_m, double other_deviation_m);
 /// Whether two lengths may be of one thing that is seen from other sides.
 bool AreOfOneThing(double length_m, double other_length_m);

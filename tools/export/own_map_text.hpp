@@ -7,7 +7,7 @@
 
 namespace lookout::exporter {
 
-/// What is larger no program needs to read.
+/// No program needs to read a larger file.
 inline constexpr std::size_t kMaxMapBytes = 32UL * 1024 * 1024;
 
 /// A FeatureCollection with "lookout_map": 1. A thing is a Polygon (LineString, Point where it has no area), land a MultiPoint: middles of cells

@@ -85,8 +85,8 @@ class Picture {
   std::vector<Outline> outlines;  // by Rank
   std::vector<Link> links;
 
-  // Nearest first, the tentative behind all that are sure: in rain they would else fill the legend. What is not finite counts as farthest, so that
-  // the order stays one. @return "3 obstacles, 1 of them tentative"
+  // Nearest first, tentative ones behind all sure ones: in rain they would else fill the legend. A value that is not finite counts as farthest, so
+  // that the order stays one. @return "3 obstacles, 1 of them tentative"
   std::string Rank(const char* things) {
     std::ranges::stable_sort(outlines, {}, [](const Outline& outline) {
       return std::pair(outline.is_tentative, std::isfinite(outline.distance_m) ? outline.distance_m : 1e9);
@@ -145,7 +145,7 @@ class Picture {
     return path;
   }
 
-  // So that what is worth seeing fills the view.
+  // So that the obstacles fill the view.
   void ChooseRings() {
     double far_m = 0.0;
     const auto reach = [&far_m](const std::vector<Vector2d>& points) {
@@ -323,7 +323,7 @@ template <typename Thing>
 Outline OutlineOf(const Thing& thing, double distance_m, const std::string& place, std::vector<Vector2d> hull, std::vector<Vector2d> waterline) {
   const bool is_tentative = thing.confidence == segment_t::CONFIDENCE_TENTATIVE;
   const bool is_land = thing.kind == segment_t::KIND_LAND;
-  // The size says little of what is tentative, or of land.
+  // The size of a tentative obstacle, or of land, says little.
   const auto what = is_tentative ? std::string(words::WordOf(words::kConfidence, thing.confidence)) + PercentOf(thing.thing_probability)
                     : is_land    ? std::string(words::WordOf(words::kKind, thing.kind))
                                  : fmt::format("{:.1f} x {:.1f} m", thing.length_m, thing.width_m);
@@ -355,7 +355,7 @@ Picture PictureOfReturns(const ScanMessages& scan, const MergeReasons& reasons, 
     picture.bow_rad = up_rad;
     picture.own_vessel_box_m = boat->own_vessel_box_m;
   }
-  std::map<std::pair<int, std::string_view>, Dots> dots;  // by label, then reason: what is in no segment lies below
+  std::map<std::pair<int, std::string_view>, Dots> dots;  // by label, then reason: returns in no segment lie below
   int num_returns = 0;
   bool has_labels = false;
   for (const auto& [part_index, part] : scan.scans) {

@@ -1,4 +1,4 @@
-// Which part of a log is exported: a time, and what lies near a place.
+// The exported part of a log: a time, and a circle around a place.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace lookout::exporter {
 
-/// What lies within `radius_m` (above 0) of a place.
+/// Places within `radius_m` (above 0) of a place.
 struct Circle {
   GeodeticPlace place;
   double radius_m = 0.0;

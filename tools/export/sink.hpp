@@ -23,7 +23,7 @@ class Sink {
   /// Channels that it reads; the first is the one that must be there.
   virtual std::vector<bus::Channel> Channels() const = 0;
 
-  /// Takes a message of one of its channels, in the order of the log, and appends to `text` what can be written of it.
+  /// Takes a message of one of its channels, in the order of the log, and appends its output to `text`.
   virtual Taken Take(std::string_view channel, Bytes bytes, std::string& text) = 0;
 
   /// End of the input: appends the rest.
@@ -32,7 +32,7 @@ class Sink {
   /// Whether later messages cannot change the result.
   virtual bool IsDone() const { return false; }
 
-  /// Lines for people about what was not as expected.
+  /// Lines for people about unexpected input.
   virtual std::vector<std::string> Remarks() const { return {}; }
 };
 

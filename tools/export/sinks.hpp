@@ -1,4 +1,4 @@
-// What lookout-export writes: tables as CSV, a cloud as PLY, pictures as SVG. Maps: map_sinks.hpp.
+// Outputs of lookout-export: tables as CSV, a cloud as PLY, pictures as SVG. Maps: map_sinks.hpp.
 #pragma once
 
 #include <memory>
@@ -19,10 +19,9 @@ std::vector<std::string_view> TableNames();
 /// @return the header line of a table without its end; empty when there is no such table
 std::string_view TableHeader(std::string_view table);
 
-/// @param near  of obstacles, tracks and pose: rows of what lies outside are left out, also of what has no place; Finish throws std::runtime_error
-/// when
-///              none is left
-/// @return what writes `table` as CSV, without header; nullptr when there is no such table, or it is merges
+/// @param near  of obstacles, tracks and pose: rows outside are left out, also those without a place; Finish throws std::runtime_error when none is
+/// left
+/// @return the writer of `table` as CSV, without header; nullptr when there is no such table, or it is merges
 std::unique_ptr<Sink> MakeCsvSink(std::string_view table, const std::optional<Circle>& near);
 
 /// The labelled cloud of one scan (binary, little-endian), for MeshLab, CloudCompare or Open3D.
@@ -33,7 +32,7 @@ std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> seq);
 /// One scan from above, 1320 x 1000 pixels: its returns with their segments, or its obstacles. The same text for the same log.
 std::unique_ptr<Sink> MakeScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq);
 
-/// The pairs of pieces that were judged in each round of merging when a scan is segmented again, with what each feature added.
+/// The pairs of pieces that were judged in each round of merging when a scan is segmented again, with the part of each feature.
 ///
 /// @param params     of method LOOKOUT
 /// @param seq        of the scan; nullopt = the last whole one
@@ -50,8 +49,8 @@ std::unique_ptr<Sink> MakeMergesSvgSink(const segmenter::Params& params, const c
 /// The track of the boat out of POSE, 1320 x 1000 pixels: north up, one line for each stretch of one status. Places closer than 0.2 m to the last one
 /// are left out, so that a day at anchor stays small. Poses without position break the line.
 ///
-/// @param has_tracks  also what the tracker made of the log: the confirmed tracks, with the way of what has moved; land that it remembered; where the
-///                    boat was when each alert came up
+/// @param has_tracks  also the tracker's results: the confirmed tracks, with the way of moving ones; remembered land; where the boat was when each
+/// alert came up
 std::unique_ptr<Sink> MakeTrackSvgSink(bool has_tracks);
 
 }  // namespace lookout::exporter

@@ -1,4 +1,4 @@
-// What stands: things that one process of the tracker has seen stand.
+// Standing things: those that one process of the tracker has seen stand.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,19 +37,19 @@ struct StandingScan {
 
 /// Once a second of measurement time: a confirmed track that stands is the thing nearest to it, within SamePlaceM of both deviations and of about its
 /// length; one that has stood for 10 s where no thing is becomes one, while there are fewer than kMostMapThings. A thing in reach without a track is
-/// gone when in 20 such seconds beams passed through all of it, 100 beams together, and nothing was hit; what is hit there begins the count anew.
+/// gone when in 20 such seconds beams passed through all of it, 100 beams together, and nothing was hit; a hit there begins the count anew.
 class StandingThings {
  public:
   /// @param given  of processes before, by number: they are looked through, too
   explicit StandingThings(const std::map<std::int64_t, MapThing>& given);
 
   /// Scans in the order in which the process told them.
-  /// @param sight  nullptr: what could have been seen is not known
+  /// @param sight  nullptr: sight is not known
   void Update(const StandingScan& scan, const tracker::Sight* sight);
 
-  /// What this process has seen stand.
+  /// The things that this process has seen stand.
   std::vector<MapThing> Seen() const;
-  /// Numbers of what was given and found gone, and when.
+  /// Numbers of given things that were found gone, and when.
   std::vector<std::pair<std::int64_t, Utime>> GivenGone() const;
   /// Seconds in which a thing was not kept, since there are too many; each thing counts.
   std::int64_t num_over_limit() const { return num_over_limit_; }

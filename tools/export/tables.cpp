@@ -40,7 +40,7 @@ Fixed GeodeticDegrees(double angle_deg) { return {angle_deg, 9}; }  // 0.1 mm on
 Fixed Degrees(double angle_rad) { return {RadToDeg(angle_rad), 4}; }
 Fixed Share(double share) { return {share, 4}; }  // or a probability
 
-// Of one scan, by number of the piece, else by id of the segment: the track, or 0 where it is land by what is remembered.
+// Of one scan, by number of the piece, else by id of the segment: the track, or 0 where it is remembered land.
 struct TracksOfScan {
   std::map<std::int32_t, std::int64_t> of_piece;  // as TRACKS say; empty: they say nothing of pieces
   std::map<std::int32_t, std::int64_t> of_segment;
@@ -210,7 +210,7 @@ bool AppendMessage(Bytes bytes, const Near* /*near*/, std::string& text) {
   return true;
 }
 
-// The same of what has a place.
+// The same of obstacles with a place.
 template <typename Message>
 bool AppendPlaced(Bytes bytes, const Near* near, std::string& text) {
   const auto message = bus::Decode<Message>(bytes);

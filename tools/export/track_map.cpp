@@ -125,7 +125,7 @@ class TrackMapSink final : public Sink {
 
   void Finish(std::string& text) override {
     const auto& pieces = own_.Finish();
-    // Told by whoever reads the log.
+    // The reader of the log tells it.
     if (scans_.is_one && !scan_utime_us_) return;
     if (!has_tracks_ && pieces.empty() && !circle_) return;
     writer_->Begin(text);
@@ -170,7 +170,7 @@ class TrackMapSink final : public Sink {
     return Taken::kOk;
   }
 
-  // @return whether what comes with this message is wanted
+  // @return whether this message is wanted
   bool BeginScan(const tracks_t& tracks) {
     if (!scans_.is_one) return true;
     if (scans_.seq && scan_utime_us_ && tracks.utime_us != scan_utime_us_) is_done_ = true;

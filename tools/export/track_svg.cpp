@@ -137,7 +137,7 @@ class TrackSvgSink : public Sink {
             kEarthRadiusM * DegToRad(latitude_deg - latitude_deg_)};
   }
 
-  // What comes before the first place of the boat is left out.
+  // Tracks before the first place of the boat are left out.
   Taken TakeTracks(Bytes bytes) {
     const auto tracks = bus::Decode<tracks_t>(bytes);
     if (!tracks) return Taken::kUndecodable;
@@ -263,7 +263,7 @@ class TrackSvgSink : public Sink {
         20.0 + bar_m * pixels_per_m, bar_m, bar_m < 1.0 ? 1 : 0);
   }
 
-  // Land below, then tracks: the way of what has moved, the last outline of all, a number where none lies on another.
+  // Land below, then tracks: the way of moving ones, the last outline of all, a number where none lies on another.
   void DrawTracks(const auto& x, const auto& y, const auto& points_of, std::string& text) const {
     std::string land;
     for (const auto& [east, north] : land_) {

@@ -1,4 +1,4 @@
-// What POSE says of speed and course, for tables and screens.
+// Speed and course of POSE, for tables and screens.
 #pragma once
 
 #include <Eigen/Core>

@@ -48,7 +48,7 @@ std::vector<std::vector<Waterline::Cell>> Waterline::Chains(std::set<Cell> cells
   for (const auto& cell : all) {
     if (cells.contains(cell) && num_neighbours(cell) <= 1) follow(cell);
   }
-  // What is left goes round.
+  // The remaining cells form closed lines.
   for (const auto& cell : all) {
     if (!cells.contains(cell)) continue;
     follow(cell);

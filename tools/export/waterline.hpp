@@ -14,7 +14,7 @@
 namespace lookout::exporter {
 
 /// Joins the cells of TRACKS' waterline, which come without an order, along their neighbours: lines from middle to middle. A cell without neighbour
-/// is a line of its own width. What was told once stays.
+/// is a line of its own width. A cell that was told once stays.
 class Waterline {
  public:
   static constexpr double kCellM = 0.5;  // of the land memory

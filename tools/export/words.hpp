@@ -72,7 +72,7 @@ inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"}, Word{pose
                                         Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"},
                                         Word{pose_t::STATUS_COASTING, "coasting"}};
 
-/// What POSE has its heading from: a compass, an attitude sensor, or only the course over ground.
+/// The source of POSE's heading: a compass, an attitude sensor, or only the course over ground.
 inline constexpr std::array kHeadingSource{Word{pose_t::HEADING_NONE, "none"}, Word{pose_t::HEADING_HDT, "hdt"}, Word{pose_t::HEADING_PASHR, "pashr"},
                                            Word{pose_t::HEADING_COURSE, "course"}};
 

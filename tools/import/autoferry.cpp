@@ -53,7 +53,7 @@ std::vector<Eigen::Vector2d> DetectionsOf(const json& measurement) {
   return detections_m;
 }
 
-// What a parser or we say of a file, with its name.
+// The message of a parser, or our own, about a file, with its name.
 template <typename Read>
 auto Named(const std::filesystem::path& file, const Read& read) {
   try {

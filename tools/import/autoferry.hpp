@@ -19,10 +19,10 @@ namespace lookout::importer {
 /// Engineering 252 (2022) 111168.
 inline constexpr GeodeticPlace kAutoferryDatum{63.4389029083, 10.39908278, 0.0};
 
-// What the files do not say.
+// Values that the files do not hold.
 inline constexpr double kAutoferryDetectionSdM = 2.0;  // of a detection, along each axis: 2 m serve best in trackers that were tuned on these data
 inline constexpr double kAutoferryOwnSdM = 0.5;        // of the own position, drawn: of a receiver with corrections, and 0.1 s of the ferry's way
-inline constexpr int kAutoferryReturns = 5;            // of a detection, drawn: what its clustering kept is no single return
+inline constexpr int kAutoferryReturns = 5;            // of a detection, drawn: its clustering kept no single returns
 
 /// One scan of the lidar. Map frame at kAutoferryDatum: east, north.
 struct FerryScan {

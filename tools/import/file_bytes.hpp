@@ -8,7 +8,7 @@
 
 namespace lookout::importer {
 
-/// What is wrong with a file: "file:line: reason" in its text, "file: byte N: reason" in its binary part.
+/// The fault of a file: "file:line: reason" in its text, "file: byte N: reason" in its binary part.
 class PointFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,4 +1,4 @@
-// What lookout-log does. Several logs are read in their order, as one (rotated files).
+// The commands of lookout-log. Several logs are read in their order, as one (rotated files).
 #pragma once
 
 #include <cstdio>
@@ -15,7 +15,7 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Prints what the logs hold: files and their damage, what wrote them, and a line per channel.
+/// Prints the contents of the logs: files and their damage, the writing program, and a line per channel.
 /// @param progress  for people (runtime::OnlyTerminal); nullptr: silent. As below
 /// @throws std::runtime_error when a file cannot be opened, or none holds an event
 void Info(const std::vector<std::filesystem::path>& files, std::ostream& out, std::FILE* progress = nullptr);
@@ -34,7 +34,7 @@ struct SliceRequest {
 /// @throws UsageError; std::runtime_error also when there is no such event
 void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors, std::FILE* progress = nullptr);
 
-/// Writes every whole event of `input`, and prints what was lost: how many bytes, in which stretches, where.
+/// Writes every complete event of `input`, and prints losses: how many bytes, in which stretches, where.
 /// @param force  an existing output is replaced
 /// @throws std::runtime_error when `input` cannot be opened or holds no event, `output` exists or cannot be written
 void Repair(const std::filesystem::path& input, const std::filesystem::path& output, bool force, std::ostream& out, std::ostream& errors,

@@ -133,7 +133,7 @@ class LogSummary {
     if (is_new && machines_.size() < kMaxStretchesNamed) machines_.push_back(machine);
   }
 
-  // What the marks mean for a replay: whether it gives what the live run gave.
+  // The meaning of the marks for a replay: whether it gives the results of the live run.
   void PrintMarks(std::ostream& out) const {
     if (marks_.Channels().empty()) {
       out << fmt::format("{:<9} no raw channel: cannot be computed again from its beginning\n", "marks");

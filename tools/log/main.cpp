@@ -1,4 +1,4 @@
-// lookout-log: what is in a log, a part of it, and a damaged one made readable.
+// lookout-log: describes a log, writes a part of it, and makes a damaged one readable.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>

@@ -17,7 +17,7 @@ inline bool IsOfOtherType(const bus::Channel& channel, Bytes bytes) {
 /// Whether lookout-replay makes the channel's messages anew out of the raw ones.
 constexpr bool IsMadeAnew(const bus::Channel& channel) { return channel.is_replayed && !channel.is_raw; }
 
-/// What they are, and what to do.
+/// Messages of another type: their probable origin, and advice.
 inline std::string OtherTypeText(const bus::Channel& channel, std::int64_t num_messages) {
   const std::string name(channel.name);
   const std::string what = std::to_string(num_messages) + " messages of " + name + " are of another type than this version's " + name;

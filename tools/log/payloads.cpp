@@ -63,7 +63,7 @@ std::string_view FaultOf(const lidar_packets_t& message) {
       if (fault != vlp16::DataFault::kNone) return vlp16::kDataFaultNames.at(static_cast<std::size_t>(fault));
     } else {
       const auto fault = vlp16::ParsePositionPacket(payload).fault;
-      // A sentence of no use is as the sensor sent it.
+      // A sentence that is of no use is as the sensor sent it.
       if (fault != vlp16::PositionFault::kNone && fault != vlp16::PositionFault::kSentence) {
         return vlp16::kPositionFaultNames.at(static_cast<std::size_t>(fault));
       }

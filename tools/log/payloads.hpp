@@ -1,4 +1,4 @@
-// Whether the messages of a log are whole: LCM's log has no checksum, so that a flipped bit inside of a message shows in what it holds alone.
+// Whether the messages of a log are sound: LCM's log has no checksum, so that a flipped bit inside of a message shows in its values alone.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace lookout::log {
 
-/// What is wrong with a message of a known channel, as its readers check it: another type than the channel's, bytes that do not decode, counts or
-/// numbers that cannot be, packets of the lidar or sentences that are not whole. A flip that leaves a value which can be is not found.
+/// The fault of a message of a known channel, as its readers check it: another type than the channel's, bytes that do not decode, impossible counts
+/// or numbers, damaged packets of the lidar or sentences. A flipped bit that leaves a possible value is not found.
 ///
-/// @return empty where nothing is, or the channel is not known
+/// @return empty where there is none, or the channel is not known
 std::string_view PayloadFault(std::string_view channel, Bytes bytes);
 
 /// Counts them over a log.

@@ -1,4 +1,4 @@
-// What POSE of a log or a run knew, and why there are no tracks where it knew nothing.
+// Known values of POSE of a log or a run, and why there are no tracks where they are missing.
 #pragma once
 
 #include <cstdint>

@@ -66,7 +66,7 @@ inline std::string InWords(const Interleaving& interleaving) {
                      TimeText(interleaving.time), interleaving.num_messages);
 }
 
-/// What that means for who computes the log again.
+/// The consequence for a replay of the log.
 inline constexpr const char* kOutsideProof = "from there on the log stands outside the proof: what a replay gives need not equal the live run";
 
 }  // namespace lookout::log

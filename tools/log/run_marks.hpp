@@ -19,8 +19,8 @@
 namespace lookout::log {
 
 /// LIDAR_PACKETS and NAV_RAW begin with a start mark and end with an end mark where the log holds all that their process consumed. Without a start
-/// mark what is computed first depends on what came before the log; without an end mark nobody knows what the live run made of the scan and the poses
-/// that were under way.
+/// mark the first results depend on messages before the log; without an end mark nobody knows the live run's results of the scan and the poses under
+/// way.
 class RunMarks {
  public:
   /// Whether messages of this channel can hold marks.
@@ -30,7 +30,7 @@ class RunMarks {
   void Add(Utime time, std::string_view channel, Bytes bytes) {
     auto* const stream = std::ranges::find(streams_, channel, &Stream::channel);
     if (stream == streams_.end() || bytes.size() < kMarkOffset + 8) return;
-    if (bus::ReadU64BigEndian(bytes, 0) != stream->fingerprint) return;  // what is no such message nobody consumed
+    if (bus::ReadU64BigEndian(bytes, 0) != stream->fingerprint) return;  // nobody consumed a message of another type
     const auto mark = static_cast<std::int32_t>(bus::ReadU64BigEndian(bytes, kMarkOffset) >> 32);
     const auto holds = [&](std::int32_t searched) { return stream->is_bit ? (mark & searched) != 0 : mark == searched; };
     const bool is_start = holds(stream->start_mark);

@@ -18,13 +18,13 @@
 
 namespace lookout::replay {
 
-/// What went over one channel.
+/// Traffic of one channel.
 struct ChannelDigest {
   std::int64_t count = 0;
   bus::Sha256 sha256;  // over the payloads, one after the other
 };
 
-/// What the processes would find wrong at their start, of all files at once.
+/// The faults that the processes would find at their start, of all files at once.
 ///
 /// @throws config::ConfigError
 void CheckConfig(const std::filesystem::path& config_folder);
@@ -53,7 +53,7 @@ class Chain {
   /// End of logs: a service that reads marks has flushed at its end mark, or was cut off and flushed nothing.
   ///
   /// @param is_whole  the run came to its end in the logs
-  /// @return messages that were left out, since nobody knows what the live run made of them
+  /// @return messages that were left out, since nobody knows the live run's results of them
   std::int64_t FinishLogs(bool is_whole);
 
   /// Time of the latest event; nullopt before the first.
@@ -85,7 +85,7 @@ class Chain {
  private:
   struct Running;
 
-  // Calls `call` with the stage of each service, one after the other, and hands out the messages that come of it.
+  // Calls `call` with the stage of each service, one after the other, and hands out the resulting messages.
   template <typename Call>
   void ForEachStage(const Call& call);
   void AdvanceTo(Utime time);

@@ -202,7 +202,7 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
   std::set<std::string, std::less<>> present;
   std::size_t num_logs = 0;
   std::size_t num_text_logs = 0;
-  // Logs are looked at, and then read for what the tracker did.
+  // Logs are looked at, and then read for the actions of the tracker.
   std::int64_t total_bytes = 1;
   for (const auto& file : files) {
     std::error_code error;

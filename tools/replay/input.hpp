@@ -1,4 +1,4 @@
-// What replay reads: captures, text logs of NMEA 0183 and lcm-logs, told apart by their first bytes.
+// The inputs of replay: captures, text logs of NMEA 0183 and lcm-logs, told apart by their first bytes.
 #pragma once
 
 #include <chrono>
@@ -20,13 +20,12 @@ namespace lookout::replay {
 
 enum class InputKind { kCapture, kTextLog, kLog };
 
-/// @return by content: what begins as a capture is one, what holds an event of LCM is a log, of all else what navigator::IsTextLog says is a text
-/// log, and the rest is
-///         left to libpcap
+/// @return by content: a file that begins as a capture is one, a file with an event of LCM is a log, a file that navigator::IsTextLog accepts is a
+/// text log, and any other is left to libpcap
 /// @throws std::runtime_error when the file is no file, cannot be read, is empty, or is plainly of another kind (io::WhyNot)
 InputKind KindOf(const std::filesystem::path& file);
 
-/// What is to be done with these files.
+/// The task for these files.
 struct Inspection {
   Plan plan;
   bool is_logs = false;                           // else captures
@@ -42,7 +41,7 @@ struct Inspection {
 /// logs do not hold what is needed
 Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request, const std::function<void(double)>& show_share = {});
 
-/// What was read and what was left out.
+/// Messages that were read and that were left out.
 struct InputSummary {
   std::int64_t num_events = 0;                                // datagrams or messages that were handed in
   std::vector<std::pair<std::string, std::int64_t>> left;     // messages of logs that were not read, by channel: computed again, or of no use here
@@ -54,8 +53,8 @@ struct InputSummary {
 /// Feeds the files, in their order, into the chain. @throws std::runtime_error when one cannot be read; io::Stopped
 InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspection& inspection, Chain& chain, runtime::Progress& progress);
 
-/// Feeds no more: ends the chain as the input ends. What was computed then ends where the live run did, or where the log was cut.
-/// @return messages of SEGMENTS that were left out, as nobody knows what the live run made of them
+/// Feeds no more: ends the chain as the input ends. The results end where the live run did, or where the log was cut.
+/// @return messages of SEGMENTS that were left out, as nobody knows the live run's results of them
 std::int64_t Finish(const InputSummary& summary, const Inspection& inspection, Chain& chain);
 
 /// Config files (*.txtpb) whose text in force is not the same in both, by name.

@@ -10,7 +10,7 @@ namespace lookout::replay {
 namespace {
 
 constexpr std::size_t kMaxPortsNamed = 8;
-// So much of a run is without a place before a position is first there; more is told.
+// So much of a run is without a place before the first position; a longer time is told.
 constexpr double kUsualShareWithoutPlace = 0.1;
 
 std::string PortList(const std::vector<int>& ports) { return fmt::format("{} {}", ports.size() == 1 ? "port" : "ports", fmt::join(ports, ", ")); }
@@ -53,7 +53,7 @@ std::string NoSentences(const Seen& seen) {
                      OtherPortsHint(seen.other_ports, &OtherPort::num_sentences, "give navigator.txtpb the port"));
 }
 
-// What follows where nothing is placed.
+// Consequences where nothing is placed.
 std::string NoPlaceMeans(const Seen& seen) {
   if (!seen.wants_tracks || seen.num_scans == 0) return "";
   return ": obstacles are known in the vessel frame alone (range and bearing), there are no tracks and no closest approach; the guard zone works";

@@ -1,4 +1,4 @@
-// What the result of a replay lacks, and why, in words.
+// Missing parts of the result of a replay, and their reasons, in words.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct OtherPort {
 };
 using OtherPorts = std::map<int, OtherPort>;
 
-/// What went in and what came out.
+/// Counts of input and output.
 struct Seen {
   enum class Input { kCapture, kTextLog, kLog };
   Input input = Input::kCapture;

@@ -71,7 +71,7 @@ std::vector<Heard> ProcessesOfTheRun(const std::vector<Told>& log) {
   return run;
 }
 
-// Of two that overlap, the one that goes on counts from its first ALERTS on, the other until then.
+// Of two processes that overlap, the one that goes on counts from its first ALERTS on, the other one until then.
 std::vector<Told> WithoutIntruders(std::vector<Told> log) {
   std::vector<Told> rest;
   const auto run = ProcessesOfTheRun(log);

@@ -1,4 +1,4 @@
-// What the logs tell of the live run of the tracker.
+// The live run of the tracker, as the logs tell it.
 #pragma once
 
 #include <cstdint>

@@ -104,7 +104,7 @@ std::int64_t CountOf(Chain& chain, const lookout::bus::Channel& channel) {
   return entry == chain.digests().end() ? 0 : entry->second.count;
 }
 
-// RUN_INFO of the result: the config in force, and what makes it another result than the whole chain gave with the config of the input.
+// RUN_INFO of the result: the config in force, and why its results may differ from those of the whole chain with the config of the input.
 lookout::run_info_t RunInfoOf(const Options& options, const lookout::replay::Inspection& inspection) {
   auto run_info = lookout::runtime::MakeRunInfo("replay", options.config_folder);
   std::string text = IsWhole(inspection.plan) ? "" : InWords(inspection.plan);
@@ -146,7 +146,7 @@ void PrintInterleavings(const std::vector<lookout::log::Interleaving>& interleav
   }
 }
 
-// Whether the logs hold a run from its start to its end, and what it means where they do not.
+// Whether the logs hold a run from its start to its end, and the consequence where they do not.
 void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) {
   const auto warn = [](const std::vector<std::string>& channels, const char* meaning) {
     if (!channels.empty()) spdlog::warn("{}: the input {}", fmt::join(channels, ", "), meaning);
@@ -160,7 +160,7 @@ void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) 
   }
 }
 
-// What is told at the end.
+// The report at the end.
 struct Watched {
   lookout::log::PoseCounts poses;
   std::map<std::string, std::int64_t, std::less<>> num_of_other_type;  // by channel, of those that are read and not computed
@@ -236,7 +236,7 @@ void Replay(const Options& options) {
   const double digest_s = lookout::ToSeconds(chain.digest_time());
   const double elapsed_s = lookout::ToSeconds(std::chrono::steady_clock::now() - start) - digest_s;
 
-  const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a scan; else scans are told by what they give
+  const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a scan; else the results count the scans
   const auto num_scans = CountOf(chain, has_clock ? lookout::bus::kLidarClock : lookout::bus::kSegments);
   PrintSummary(summary, chain, num_scans);
   PrintInterleavings(summary.interleavings);
@@ -261,7 +261,7 @@ void Replay(const Options& options) {
   for (const auto& line : lookout::replay::Lacks(SeenIn(options, inspection, chain, watched))) spdlog::warn("{}", line);
   std::FILE* const out = output.IsStandardOutput() ? stderr : stdout;  // a log that goes there is not mixed with lines
   output.Commit();
-  PrintDigests(chain, out);  // last: the log is there, whoever reads these
+  PrintDigests(chain, out);  // last: the log is there, whether or not anybody reads these
 }
 
 // Memory that is returned to the system is requested again at the next scan: page faults took a tenth of the time.

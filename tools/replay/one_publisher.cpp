@@ -6,7 +6,7 @@ namespace lookout::replay {
 
 namespace {
 
-// Some twenty seconds of a boat's log. Beyond it what is held first is given up.
+// Some twenty seconds of a boat's log. Beyond it the first held message is given up.
 constexpr std::size_t kMaxBytes = 64'000'000;
 
 }  // namespace

@@ -25,7 +25,7 @@ class OnePublisher {
   /// @param event  its number, for Interleavings
   void Add(std::int64_t event, Utime time, const bus::Channel& channel, Bytes bytes);
 
-  /// End of the input: what waits is handed on.
+  /// End of the input: waiting messages are handed on.
   void Finish();
 
   /// Channels with two publishers, in the order in which the second was first heard.

@@ -31,7 +31,7 @@ std::vector<std::string_view> PublishersOf(const bus::Channel& channel, const Se
   return names;
 }
 
-// Each once, in the order of the channel table; what it does not hold stands last.
+// Each once, in the order of the channel table; other channels stand last.
 std::vector<std::string> InTableOrder(std::vector<const bus::Channel*> channels) {
   const auto place = [](const bus::Channel* channel) { return std::ranges::find(bus::kChannels, channel->name, &bus::Channel::name); };
   std::ranges::stable_sort(channels, {}, place);
@@ -65,7 +65,7 @@ std::vector<std::string> StoppedBy(const std::string& from, const ServiceRows& s
   return stopped;
 }
 
-// Which services run, with no word yet about what they read.
+// The running services, without their inputs yet.
 Plan Running(const Request& request, const ServiceRows& services) {
   Plan plan{.services = ServiceNames(services), .table = services};
   for (const auto& name : request.only) {

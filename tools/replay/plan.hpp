@@ -26,7 +26,7 @@ std::vector<std::string> ServiceNames(const ServiceRows& services = ReplayedServ
 /// wherever it is.
 std::vector<std::string> FromNames(const ServiceRows& services = ReplayedServices());
 
-/// What the command line asks for.
+/// The request of the command line.
 struct Request {
   std::vector<std::string> from = {};  // --from: channels that are read and not computed
   std::vector<std::string> only = {};  // --only: services that run; empty = all
@@ -38,13 +38,13 @@ class RequestError : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// What runs, and where the data begin. By default: all services, fed with the datagrams of captures.
+/// The running services, and where the data begin. By default: all services, fed with the datagrams of captures.
 struct Plan {
   std::vector<std::string> services = ServiceNames();  // that run, in the order of the data
   ServiceRows table = ReplayedServices();              // out of which they were chosen
   std::vector<std::string> read = {};                  // channels that come out of the logs, in the order of the channel table
-  std::vector<std::string> absent = {};                // of these, what the logs do not hold
-  std::optional<tracker::Script> script = {};          // what the tracker did live, where the logs tell
+  std::vector<std::string> absent = {};                // of these, channels that the logs do not hold
+  std::optional<tracker::Script> script = {};          // actions of the live tracker, where the logs tell
 
   bool Runs(std::string_view service) const;
   /// Whether a service that runs publishes the channel.
@@ -54,15 +54,15 @@ struct Plan {
   bool Gives(const bus::Channel& channel) const;
 };
 
-/// Channels that a replay of logs could read for this request, but for ALERT_ACK, on which no plan depends: when all of them are known to be there,
-/// no more need be looked for.
+/// Channels that a replay of logs could read for this request, but for ALERT_ACK, on which no plan depends: once all of them are known to be there,
+/// the search can end.
 ///
-/// @throws RequestError when parts of the request contradict each other or name what is not there
+/// @throws RequestError when parts of the request contradict each other or name a channel or service that is not there
 ChannelSet Candidates(const Request& request, const ServiceRows& services = ReplayedServices());
 
 /// The rules: the publisher of a channel of --from does not run, nor does any service whose output it needs (a service with a raw output needs
-/// nobody's), but for raw channels, which are read in place of what their service reads live. What a service that runs reads and no service that runs
-/// publishes, is read. A service with a raw output reads that where the logs hold it, and else, or when --from names one of them, its inputs.
+/// nobody's), but for raw channels, which are read in place of their service's live inputs. An input of a running service that no running service
+/// publishes is read. A service with a raw output reads that where the logs hold it, and else, or when --from names one of them, its inputs.
 ///
 /// @param present  channels that the logs hold
 /// @throws RequestError as Candidates; std::runtime_error when the logs lack a channel of --from, the input of a service of --only, or every input
@@ -76,7 +76,7 @@ Plan MakeCapturePlan(const Request& request, const ServiceRows& services = Repla
 /// Whether all services run.
 bool IsWhole(const Plan& plan);
 
-/// What runs and what is read, for RUN_INFO: two lines.
+/// The running services and the channels that are read, for RUN_INFO: two lines.
 std::string InWords(const Plan& plan);
 
 }  // namespace lookout::replay

@@ -44,7 +44,7 @@ class Vlp16Stage final : public Stage {
   vlp16::Service service_;
 };
 
-// A service that computes what it publishes from messages alone, and holds nothing at its end.
+// A service that computes its output from messages alone, and holds nothing at its end.
 template <typename Service, auto load>
 class PlainStage final : public Stage {
  public:

@@ -1,4 +1,4 @@
-// A service inside a replay: what the chain asks of it, and the services that replay can run.
+// A service inside a replay: its interface to the chain, and the services that replay can run.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct Datagram {
   vlp16::Sender sender = {};
 };
 
-/// Messages reach a service over the bus that it was made with; the rest comes here. What a service has no use for it leaves out.
+/// Messages reach a service over the bus that it was made with; the rest comes here. A service leaves out input that it has no use for.
 class Stage {
  public:
   Stage() = default;
@@ -40,13 +40,13 @@ class Stage {
   /// A line of a text log of NMEA 0183.
   virtual void OnTextLine(Utime /*time*/, Bytes /*line*/) {}
 
-  /// End of a capture: flushes what the service holds, as it does live at its own end.
+  /// End of a capture: flushes the messages that the service holds, as it does live at its own end.
   virtual void Finish(Utime /*time*/) {}
 
   /// End of logs.
   ///
   /// @param is_whole  the run came to its end in the logs
-  /// @return messages that are left out, since nobody knows what the live run made of them
+  /// @return messages that are left out, since nobody knows the live run's results of them
   virtual std::int64_t FinishLogs(Utime /*time*/, bool /*is_whole*/) { return 0; }
 
   virtual HealthReport Report() const = 0;
@@ -58,7 +58,7 @@ class Stage {
   std::int64_t num_measured_ = 0;
 };
 
-/// What a stage is told beforehand.
+/// Facts that a stage is told beforehand.
 struct StageInput {
   bool reads_raw = false;  // its input is the raw channel that it publishes live
   const Plan& plan;

@@ -24,9 +24,9 @@ using std::chrono::seconds;
 // HEALTH and the slowest data come once a second, RUN_INFO every ten.
 constexpr seconds kSilence(3);
 constexpr seconds kRunInfoSilence(25);
-// OBSTACLES come with every scan: what is older says nothing about the water of now.
+// OBSTACLES come with every scan: older ones say nothing about the water of now.
 constexpr seconds kObstaclesAge(2);
-// ALERTS come with every scan, and where none comes twice a second: who shows them says when they do not.
+// ALERTS come with every scan, and twice a second where none comes: this screen says when they do not.
 constexpr seconds kAlertsAge(1);
 constexpr std::string_view kTracker = "tracker";
 
@@ -148,7 +148,7 @@ void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
   if (!is_good) ++traffic.num_bad;
 }
 
-// Keeps what is shown of a message. @return false when it contradicts itself
+// Keeps the shown part of a message. @return false when it contradicts itself
 template <typename T>
 bool Board::Note(const T& message, TimePoint now) {
   if constexpr (std::is_same_v<T, obstacles_t>) {
@@ -237,7 +237,7 @@ void Board::TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now) {
   process.last = now;
 }
 
-// A new start has another process id: what it replaces said nothing since. Of two that run both do.
+// A new start has another process id: the replaced process said nothing since. Of two that run both do.
 bool Board::IsReplaced(const ProcessKey& key, const ProcessState& process) const {
   return std::ranges::any_of(processes_, [&](const auto& other) {
     return other.first.name == key.name && other.first.host == key.host && other.first.pid != key.pid && other.second.first > process.last;

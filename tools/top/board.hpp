@@ -1,4 +1,4 @@
-// What was heard on the bus: traffic of each channel, state of each process, the nearest obstacles. Knows no clock, terminal or transport.
+// Traffic of each channel, state of each process, the nearest obstacles. Knows no clock, terminal or transport.
 #pragma once
 
 #include <chrono>
@@ -76,11 +76,11 @@ class Nearest {
   /// @param part  well-formed (messages::IsWellFormed)
   void Take(const obstacles_t& part, TimePoint now);
 
-  /// @return the newest scan that came whole, or, once the next has begun, as much of it as came; nullopt before the first
+  /// @return the newest whole scan, or, once the next has begun, the parts of it that came; nullopt before the first
   const std::optional<NearestObstacles>& newest() const { return newest_; }
 
  private:
-  // What is kept of a message.
+  // The kept part of a message.
   struct Part {
     std::int64_t utime_us = 0;
     std::int64_t seq = 0;
@@ -101,7 +101,7 @@ struct TrackLine : track_t {
   bool is_acknowledged = false;
 };
 
-/// What the tracker says of the newest scan that came whole.
+/// Tracks of the newest scan that came whole.
 struct TrackPicture {
   std::vector<TrackLine> lines;  // confirmed and coasting ones, at most kMaxLines, the nearest; by id, so that rows keep their place
   std::int64_t num_tracks = 0;   // confirmed and coasting
@@ -115,7 +115,7 @@ class Board {
   /// @param start  since when it listens
   explicit Board(TimePoint start) : start_(start) {}
 
-  /// A message of any channel. What does not decode is counted. Memory is bounded: names above kMaxChannels are not told apart.
+  /// A message of any channel. One that does not decode is counted. Memory is bounded: names above kMaxChannels are not told apart.
   void Take(std::string_view channel, Bytes bytes, TimePoint now);
 
   /// Those of the channel table in its order, then the others by name.
@@ -134,9 +134,9 @@ class Board {
   /// @return nullptr when TRACKS never came, or for more than 2 s
   const TrackPicture* Tracks(TimePoint now) const;
 
-  /// Alerts that nobody has acknowledged, the gravest first. "WARNING: ...", "CAUTION: ...", "(*) " before the one that
-  /// sounds, "WARNING SILENCED: ...". At most kMaxAlertLines. Or "NO LOOK-OUT: ...": a tracker
-  /// was heard, and ALERTS do not come yet, or for more than 1 s no more; then what was active.
+  /// Active alerts, the gravest first. "WARNING: ...", "CAUTION: ...", "(*) " before the one that sounds, "WARNING SILENCED: ...". At most
+  /// kMaxAlertLines. Or "NO LOOK-OUT: ...": a tracker was heard, and ALERTS do not come yet, or for more than 1 s no more; then the alerts that were
+  /// active.
   std::vector<std::string> AlertLines(TimePoint now) const;
   static constexpr std::size_t kMaxAlertLines = 4;
 

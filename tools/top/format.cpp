@@ -21,7 +21,7 @@ std::string Right(std::string_view text, int width) { return fmt::format("{:>{}.
 
 std::string Number(double value, int width, int decimals) {
   if (!std::isfinite(value)) return Right("-", width);
-  // Beyond what any column holds, and of what would print hundreds of digits.
+  // Beyond any column's width; a larger number would print hundreds of digits.
   constexpr double kTooLarge = 1e15;
   for (int places = decimals; places >= 0 && std::abs(value) < kTooLarge; --places) {
     std::string text = fmt::format("{:.{}f}", value, places);

@@ -8,7 +8,7 @@
 
 namespace lookout::top {
 
-/// Right-aligned. Where the number is too wide, decimals go first, then "###" stands for it; "-" for what is not finite.
+/// Right-aligned. Where the number is too wide, decimals go first, then "###" stands for it; "-" for a value that is not finite.
 std::string Number(double value, int width, int decimals);
 
 /// Right-aligned. Where it is too wide: thousands "12k", millions "12M", billions "12G", else "###".
@@ -23,11 +23,11 @@ std::string Right(std::string_view text, int width);
 /// As many of the cells, one beside the other, as are whole within the width; the first is cut to it.
 std::string Fitting(const std::vector<std::string>& cells, int width);
 
-/// Words of printable `text` in lines of at most `width`; a longer word is broken. What is more than `max_lines` ends in "..".
-/// Precondition: width >= 3, max_lines >= 1.
+/// Words of printable `text` in lines of at most `width`; a longer word is broken. Text beyond `max_lines` ends in "..". Precondition: width >= 3,
+/// max_lines >= 1.
 std::vector<std::string> Wrapped(std::string_view text, int width, int max_lines);
 
-/// Whole degrees of the circle, "000" to "359"; "-" for what is not finite.
+/// Whole degrees of the circle, "000" to "359"; "-" for a value that is not finite.
 std::string Degrees(double angle_rad);
 
 }  // namespace lookout::top

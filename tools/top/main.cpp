@@ -79,7 +79,7 @@ class StopSignals {
   int descriptor_;
 };
 
-// A bus and what was heard on it. The board may be begun anew.
+// A bus and its messages. The board may be begun anew.
 class Listener {
  public:
   explicit Listener(const std::string& lcm_url) : bus_(lcm_url), board_(Clock::now()) {

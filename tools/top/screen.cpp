@@ -132,7 +132,7 @@ std::string ObstaclesHeader(const NearestObstacles* obstacles, View view) {
                  view.width);
 }
 
-// Length and width of what was seen of it, and its height; without decimals where it gets too wide.
+// Length and width of the seen outline, and its height; without decimals where it gets too wide.
 std::string SizeText(const ObstacleLine& line) {
   const auto text = [&line](int decimals) {
     const auto side = [decimals](double length_m) {

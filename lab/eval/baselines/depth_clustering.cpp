@@ -120,7 +120,7 @@ class Search {
     }
   }
 
-  // Takes what is one with the cell. @return whether there is anything at that place
+  // Takes cells that are one with this cell. @return whether there is anything at that place
   bool Meets(std::size_t cell, int column, int ring, double angle_rad) {
     const auto first = image_.Pixel(column, ring);
     bool is_anything = false;

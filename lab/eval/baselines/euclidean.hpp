@@ -1,4 +1,4 @@
-// Euclidean clustering: what lies within a distance of each other is one.
+// Euclidean clustering: returns within a distance of each other are one.
 #pragma once
 
 #include "lab/eval/baselines/peer.hpp"

@@ -16,7 +16,7 @@ struct GroundPlaneParams {
   int num_iterations = 3;
   int num_lowest = 20;          // whose mean height is the ground's to begin with
   double seed_height_m = 0.4;   // points lower than that over it are the first guess
-  double max_distance_m = 0.2;  // of ground from the plane, above it; what lies below is ground too
+  double max_distance_m = 0.2;  // of ground from the plane, above it; all below is ground too
 };
 
 /// The ground as planes fitted to the lowest points.

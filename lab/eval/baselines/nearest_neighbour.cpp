@@ -43,7 +43,7 @@ void NearestNeighbour::Predict(std::int64_t time_us) {
   }
 }
 
-// The obstacle's mean time is half a scan before its end; what that makes is left out, as one would.
+// The obstacle's mean time is half a scan before its end; that difference is left out, as a plain tracker would.
 void NearestNeighbour::Correct(Followed& track, const obstacle_t& obstacle, std::int64_t time_us) const {
   const double step_s = Seconds(time_us - track.hit_us);
   const Eigen::Vector2d error_m = PositionOf(obstacle) - track.state.position_m;

@@ -15,14 +15,14 @@ struct NearestNeighbourParams {
   double alpha = 0.51;
   double beta = 0.09;
   double gate_m = 3.0;           // of distance between position and prediction, drawn from the size of small boats
-  double gate_growth_mps = 5.0;  // what the gate has more for each second since the last hit, drawn from the speed of boats
+  double gate_growth_mps = 5.0;  // growth of the gate for each second since the last hit, from the speed of boats
   int num_hits = 3;              // of the last num_looks scans: then it is reported
   int num_looks = 5;             // as many misses in a row end it
   double moving_mps = 0.5;       // above, it is taken for moving
 };
 
 /// Obstacles that are sure, placed and not land. Of all pairs of track and obstacle within the gate the nearest is taken first, then the nearest of
-/// what is left; of equals the track and then the obstacle of lower id. What is left begins tracks.
+/// the remaining ones; of equals the track and then the obstacle of lower id. Remaining obstacles begin tracks.
 class NearestNeighbour final : public MultiObjectTracker {
  public:
   explicit NearestNeighbour(const NearestNeighbourParams& params = {}) : params_(params) {}

@@ -1,4 +1,4 @@
-// What all peers share: the returns that are looked at, numbers of segments, and the time of each stage.
+// The common parts of all peers: the returns that are looked at, numbers of segments, and the time of each stage.
 #pragma once
 
 #include <chrono>

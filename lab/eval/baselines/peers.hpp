@@ -1,4 +1,4 @@
-// The peers in one run: what others do, on their published defaults and tuned on our scenes. All are written by us from the papers.
+// The peers in one run: methods of others, on their published defaults and tuned on our scenes. All are written by us from the papers.
 #pragma once
 
 #include "lab/eval/methods/method.hpp"

@@ -8,7 +8,7 @@
 namespace lookout::eval {
 namespace {
 
-// What is not printed of 100 % is no measure.
+// A difference to 100 % that is not printed is no measure.
 constexpr double kLeastError = 0.0005;
 
 using FigureOf = std::function<double(const MethodResult&, Mean Score::*)>;

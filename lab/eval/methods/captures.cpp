@@ -62,7 +62,7 @@ class TruthFile {
     while (last_us_ < end_us && csv_.Next()) TakeRow(begin_us);
   }
 
-  // Reads what is left, so that a fault in it is told.
+  // Reads the rest, so that a fault in it is told.
   void ReadRest() {
     while (csv_.Next()) TakeRow(std::numeric_limits<std::int64_t>::max());
   }
@@ -115,7 +115,7 @@ class TruthFile {
   std::array<std::deque<TrueReturn>, kMaxRings> by_ring_;
 };
 
-// What the second world calls things that stand on the ground; all else floats.
+// Things of the second world that stand on the ground; all else floats.
 bool IsInWater(const std::string& type) {
   static const std::set<std::string> kOnTheGround{"shore", "island",     "land",       "dock",   "pier", "jetty", "wall",
                                                   "quay",  "canal_wall", "breakwater", "bridge", "tree", "rock"};
@@ -235,7 +235,7 @@ CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const
   labelled.objects = ReadObjectsOfCapture(files);
   TruthFile truth(files.truth);
 
-  // What labels a scan has does not depend on its clock; the truth is of the sensor's.
+  // The labels of a scan do not depend on its clock; the truth is of the sensor's.
   auto params = boat.lidar.decoder;
   params.time = vlp16::TimeChoice::kSensor;
   vlp16::Decoder decoder(

@@ -16,7 +16,7 @@
 
 namespace lookout::eval {
 
-/// NAME-SEED.pcap.xz and what stands beside it: NAME-SEED.truth.csv.xz, NAME-SEED.objects.csv.xz.
+/// NAME-SEED.pcap.xz and the files beside it: NAME-SEED.truth.csv.xz, NAME-SEED.objects.csv.xz.
 struct CaptureWithTruth {
   std::string scene;  // NAME
   std::uint64_t seed = 0;
@@ -25,7 +25,7 @@ struct CaptureWithTruth {
   std::filesystem::path objects;
 };
 
-/// What stands beside a capture: the object of each return, or its objects alone.
+/// The truth beside a capture: the object of each return, or its objects alone.
 enum class CaptureTruth { kOfReturns, kOfObjects };
 
 /// @return the captures of a folder, by name and then by seed
@@ -70,11 +70,11 @@ std::map<std::int32_t, ScanObject> ReadObjectsOfCapture(const CaptureWithTruth& 
 
 /// Decodes a capture as lookout-vlp16 does and hands on each whole scan with its truth. Times are those of the sensor's clock.
 ///
-/// Returns of the own vessel (object -1) are taken out of the scan; clutter (object 0) stays. Each row of the truth is met once; of several that
-/// would do, the one of the same return index, then the nearest in time. The truth is read as it is needed, so it must be in the order of time.
+/// Returns of the own vessel (object -1) are taken out of the scan; clutter (object 0) stays. Each row of the truth is met once; of several possible
+/// ones, the one of the same return index, then the nearest in time. The truth is read as it is needed, so it must be in the order of time.
 /// Deterministic. Memory: a scan, its truth, and the whole capture unpacked, 1 GiB at most.
-/// @throws std::runtime_error "file:line: reason" or "file: reason" for what cannot be read; when more than kMaxUnmatchedShare have no truth; when
-///         there is no whole scan
+/// @throws std::runtime_error "file:line: reason" or "file: reason" for a file that cannot be read; when more than kMaxUnmatchedShare have no truth;
+/// when there is no whole scan
 CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const ScanHandler& on_scan);
 
 }  // namespace lookout::eval

@@ -1,4 +1,4 @@
-// Probabilities that a method states for its segments: what a threshold on them gives, and whether they are true.
+// Probabilities that a method states for its segments: the effect of a threshold on them, and whether they are true.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ struct Confidence {
 /// @param min_num_returns  objects with fewer in the scan are no things
 Confidence ConfidenceOf(const Confusion::Matches& matches, const Labelling& labelling, std::int64_t min_num_returns);
 
-/// What counts when segments below a probability do not.
+/// The scores when segments below a probability do not count.
 struct OperatingPoint {
   double threshold = 0.0;
   double recall = 0.0;          // share of things with a segment (Score::with_segment); NaN when there is no thing

@@ -56,7 +56,7 @@ constexpr std::array<std::string_view, 30> kFigureNames{"main",
                                                         "alerts_standing",
                                                         "alerts_left_out"};
 
-// In headings of columns a world stands before what it is a world of.
+// In headings of columns a world stands before its figure.
 std::string HeadingOf(const Results& world, const std::string& text) { return world.world.empty() ? text : world.world + ": " + text; }
 
 std::vector<const Results*> WorldsOf(const Results& results) {

@@ -13,7 +13,7 @@ namespace lookout::eval {
 
 struct ReadmeFigure {
   std::string name;                   // of its blocks
-  std::vector<std::string> captions;  // lines of text: what is counted, over what, when and how it was made
+  std::vector<std::string> captions;  // lines of text: the count, over which scans, when and how it was made
   Table table;
 };
 
@@ -22,7 +22,7 @@ struct ReadmeFigure {
 /// @param date  of the run, for the captions: "2026-11-22"
 std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& date);
 
-/// Puts figures into a text. A block begins with a line "<!-- figures: NAME -->" and ends with a line "<!-- end -->"; what stands between becomes the
+/// Puts figures into a text. A block begins with a line "<!-- figures: NAME -->" and ends with a line "<!-- end -->"; the lines between become the
 /// figure's table and captions, as Markdown. Blocks of figures that are not given, and all else, stay as they are.
 ///
 /// @param file  name of the text, for errors
@@ -32,12 +32,12 @@ std::string FillBlocks(std::string_view text, const std::vector<ReadmeFigure>& f
 /// The same of files, and says so. @throws as FillBlocks, and for files that cannot be read or written
 void FillBlocksOf(const std::vector<std::filesystem::path>& files, const std::vector<ReadmeFigure>& figures);
 
-/// Tables of runs as figures of the same names. @param scope  what was run
+/// Tables of runs as figures of the same names. @param scope  of the run, in words
 std::vector<ReadmeFigure> FiguresOf(const std::vector<NamedTable>& tables, const std::string& scope);
 
 /// Of now: "2026-11-22", UTC.
 std::string Today();
-/// "Measured 2026-11-22 by ...": for captions of what was made today (UTC).
+/// "Measured 2026-11-22 by ...": for captions of today's figures (UTC).
 std::string MeasuredToday();
 
 }  // namespace lookout::eval

@@ -29,7 +29,7 @@ struct ScanPlace {
   int index = 0;  // of the scene and seed, from 0
 };
 
-/// What a method says of one scan.
+/// The labels of a method for one scan.
 struct Labelling {
   std::vector<std::int32_t> label;  // [cells of the scan] id of a segment from 1; 0 = no return, or in no segment; or kNotScored
   std::vector<bool> is_sure;        // [segments] by id - 1; false = the method itself takes the segment for tentative
@@ -58,7 +58,7 @@ class Method {
   /// It takes some of its segments for tentative: it is scored at two operating points, all segments and the sure ones alone.
   virtual bool knows_doubt() const { return false; }
 
-  /// The scan that follows is that of this place: for methods that must not know anything of its scene, or that know the scans before it.
+  /// The next scan is that of this place: for methods that must not know anything of its scene, or that know the scans before it.
   /// @return false: it does not label such scans, and has no score there
   virtual bool BeginScan(const ScanPlace& /*place*/) { return true; }
 

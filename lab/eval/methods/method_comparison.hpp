@@ -41,7 +41,7 @@ class MethodComparison {
   std::vector<MethodResult> results_;
 };
 
-/// Scans that are kept of each method, each of another scene: enough to see what goes wrong, few enough for one page.
+/// Scans that are kept of each method, each of another scene: enough to see failures, few enough for one page.
 inline constexpr std::size_t kMaxWorstScans = 3;
 
 }  // namespace lookout::eval

@@ -9,7 +9,7 @@
 namespace lookout::eval {
 namespace {
 
-// Returns of a segment, by what they are of.
+// Returns of a segment, by their object.
 struct Shares {
   std::int64_t own = 0;
   std::int64_t land = 0;

@@ -1,4 +1,4 @@
-// What became of a thing in a scan: found, or how it was lost.
+// The outcome of a thing in a scan: found, or how it was lost.
 #pragma once
 
 #include <array>
@@ -38,8 +38,8 @@ struct Fate {
 
 /// Of an object that is a thing, or of land.
 ///
-/// Of segments that hold equally much of it, the smallest counts, then by what else they hold: the ids of segments decide nothing but `segment`.
-/// Precondition: `id` is of matches.objects.
+/// Of segments that hold equally much of it, the smallest counts, then the order of their objects and shares decides; the ids of segments decide
+/// nothing but `segment`. Precondition: `id` is of matches.objects.
 Fate FateOf(int id, const Confusion::Matches& matches, const std::map<std::int32_t, data::ScanObject>& objects);
 
 /// How many things had which outcome.

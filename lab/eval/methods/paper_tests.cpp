@@ -33,7 +33,7 @@ void AddTo(Bins& bins, const std::vector<ShoreGap>& gaps) {
   for (const auto& gap : gaps) bins[static_cast<int>(gap.distance_m / kTest1BinM)].Add(gap.iou);
 }
 
-// Looked for by kind: what else a scene holds is none of the test's business.
+// Looked for by kind: other objects of a scene do not concern the test.
 std::int32_t TheObject(const LabelledScan& truth, const std::string& kind) {
   std::int32_t found = 0;
   int count = 0;
@@ -134,7 +134,7 @@ struct ClusterTest {
   void (*set)(segmenter::ClusteringParams&, double) = nullptr;
 };
 
-// What became of the object over scans at one value of the threshold.
+// Segments of the object over scans at one value of the threshold.
 struct PartsAt {
   double value = 0.0;
   Mean clusters{};           // a scan, with a return of it

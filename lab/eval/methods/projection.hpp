@@ -1,4 +1,4 @@
-// Table II of the paper: what its image of a scan keeps, and how far it moves it.
+// Table II of the paper: the returns that its image of a scan keeps, and how far it moves them.
 #pragma once
 
 #include "lab/eval/methods/method.hpp"
@@ -7,7 +7,7 @@
 
 namespace lookout::eval {
 
-/// Sums over scans, for each width of the paper's image (README.md, Definitions). What it keeps is "ground points" in the paper's words, for its
+/// Sums over scans, for each width of the paper's image (README.md, Definitions). The kept returns are "ground points" in the paper's words, for its
 /// scans are mostly shore; out of the returns that the boat's filter lets through.
 class ProjectionTable {
  public:

@@ -28,10 +28,10 @@ struct Boat {
 /// @throws config::ConfigError
 Boat LoadBoat(const std::filesystem::path& config_folder);
 
-/// What the segmenter makes of the parts of a scan; nullopt when it refuses one, or one is missing
+/// The segmenter's scan out of its parts; nullopt when it refuses one, or one is missing
 std::optional<segmenter::Scan> ScanOfMessages(const std::vector<lidar_scan_t>& parts);
 
-/// What the segmenter receives of this scan over messages, without a bus. @throws std::logic_error when it would refuse it
+/// The scan as the segmenter receives it over messages, without a bus. @throws std::logic_error when it would refuse it
 segmenter::Scan ToSegmenterScan(const vlp16::Scan& scan, bool use_vertical_origin_offsets);
 
 using ScanHandler = std::function<void(const LabelledScan&)>;

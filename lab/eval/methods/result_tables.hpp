@@ -19,7 +19,7 @@ void PrintTables(const Results& results, std::ostream& out);
 
 /// The tables by which anything is chosen: ours on families that its evidence was not fitted on. Without rows where nothing was left out.
 std::vector<NamedTable> LeaveOutTablesOf(const Results& results);
-/// What becomes of things, of land and of clutter: how a method fails, and at which operating point. Tables whose rows name a scene stand below each
+/// Outcomes of things, of land and of clutter: how a method fails, and at which operating point. Tables whose rows name a scene stand below each
 /// other for several worlds, others side by side.
 std::vector<NamedTable> FailureTablesOf(const Results& results);
 

@@ -1,4 +1,4 @@
-// What a comparison of methods found: the numbers behind every table and plot of the report.
+// The results of a comparison of methods: the numbers behind every table and plot of the report.
 #pragma once
 
 #include <cstdint>
@@ -104,7 +104,7 @@ struct Curve {
   };
   std::vector<Line> lines;
   std::string note;                // a finding in words: "own object from 6.3 m"
-  std::string value_of_boat = {};  // of a sweep: what the boat's config has of its field
+  std::string value_of_boat = {};  // of a sweep: the value of its field in the boat's config
   std::string scans_from = {};     // of a sweep: seeds and seconds
 };
 

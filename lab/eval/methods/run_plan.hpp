@@ -1,4 +1,4 @@
-// What is rendered: scenes, and which seeds of them may choose values and which may make tables.
+// The runs: scenes, and which seeds of them may choose values and which may make tables.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 
 namespace lookout::eval {
 
-/// The operating point at which only what the method is sure of counts: returns of tentative segments are in none.
+/// The operating point at which only sure segments count: returns of tentative segments are in none.
 Labelling SureOnly(Labelling labelling);
 
 /// Objects and segments of the cells with a return whose label is not kNotScored.

@@ -8,7 +8,7 @@
 
 namespace lookout::eval {
 
-/// A return, by true object (0 = none; what the method does not look at belongs to none here) and segment (0 = none).
+/// A return, by true object (0 = none; returns that the method does not look at belong to none here) and segment (0 = none).
 struct Spot {
   std::int32_t object = 0;
   std::int32_t segment = 0;

@@ -121,7 +121,7 @@ std::string FileNameOf(const std::string& text) {
   return name;
 }
 
-// Their names depend on what went wrong: those of an earlier run would stand among the new ones.
+// Their names depend on the failures: those of an earlier run would stand among the new ones.
 void RemovePictures(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -27,7 +27,7 @@ class WorstPictures {
 
   /// Writes METHOD/SCENE/RANK-seed-SEED-scan-SCAN.svg into the folder, and makes it.
   ///
-  /// @param force  replace what is there: pictures of the same methods and scenes are removed
+  /// @param force  replace existing files: pictures of the same methods and scenes are removed
   /// @throws std::runtime_error when a file is there, or cannot be written
   void Write(const std::filesystem::path& folder, bool force) const;
 

@@ -1,4 +1,4 @@
-// What HEALTH and LIDAR_CLOCK of a log say about losses and time.
+// Losses and times of HEALTH and LIDAR_CLOCK of a log.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct Traffic {
   Summary p99_us;
 };
 
-/// What a process said last of itself.
+/// The last report of a process.
 struct ProcessState {
   int state = 0;
   std::string reason;

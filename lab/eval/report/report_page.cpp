@@ -83,8 +83,8 @@ Json ByRange(const std::map<int, Mean>& bins) {
   return json;
 }
 
-// What the objects scored, by bearing, and where the returns of each object in each segment are: on a grid that fits a plan, neighbours forward of
-// each other as one run, so that a page with many scans stays small.
+// The scores of the objects, by bearing, and the returns of each object in each segment: on a grid that fits a plan, neighbours forward of each other
+// as one run, so that a page with many scans stays small.
 Json WorstScanOf(const WorstScan& worst) {
   Json json{{"scene", PrintableLines(worst.scene)}, {"seed", std::to_string(worst.seed)}, {"scan", worst.index},
             {"iou_percent", 100.0 * worst.iou},     {"objects", Json::array()},           {"returns", nullptr}};

@@ -141,7 +141,7 @@ std::string TruthMatch::Fault(const std::string& log, const std::string& truth) 
     return fmt::format("{} and {} are not of one run: POSE of the log is {:.0f} m from the boat of the truth (median of {} poses); {}", log, truth,
                        pose_distance_m_.Median(), pose_distance_m_.count(), kRemedy);
   }
-  // What most scans say: where a clock was set some are of the other sort.
+  // The majority of the scans: where a clock was set some are of the other sort.
   const bool is_by_time = by_time_.num_scans >= by_direction_.num_scans;
   const auto& match = is_by_time ? by_time_ : by_direction_;
   if (match.num_returns < kLeastReturns || (!is_by_time && !truth_.HasPlaces())) return "";

@@ -26,7 +26,7 @@ class TruthMatch {
   /// @param truth  outlives this
   explicit TruthMatch(const Truth& truth);
 
-  /// Whether a scan lies in the time of the truth. What does not is not scored.
+  /// Whether a scan lies in the time of the truth. A scan outside is not scored.
   bool Holds(std::int64_t scan_utime_us) const;
 
   /// Counts a scan of the log, scored or not. @param scan_utime_us  in the order of the log

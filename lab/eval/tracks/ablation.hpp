@@ -1,4 +1,4 @@
-// What each part of the boat's tracker is worth: the same runs with each of them left out.
+// Ablation: the same runs with each part of the boat's tracker left out.
 #pragma once
 
 #include <functional>
@@ -20,13 +20,13 @@ struct Ablation {
 /// One for each part.
 std::vector<Ablation> Ablations();
 
-/// The tracker process without some of its parts, beside a chain of all services: it reads what goes over the chain's bus, and publishes for itself.
+/// The tracker process without some of its parts, beside a chain of all services: it reads the messages of the chain's bus, and publishes for itself.
 class AblatedTracker {
  public:
   /// @param on_tracks  called with each message of TRACKS
   AblatedTracker(tracker::Params params, const tracker::Without& without, std::function<void(Bytes)> on_tracks);
 
-  /// A message of the chain. What it publishes by that is handed out before this returns.
+  /// A message of the chain. Its own messages that follow are handed out before this returns.
   void Add(std::string_view channel, Bytes bytes);
   /// End of input.
   void Finish();

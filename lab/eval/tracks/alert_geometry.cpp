@@ -88,7 +88,7 @@ struct TwoHulls {
   Vector2d own_center_m;
   Vector2d thing_center_m;
 
-  // The own hull moves, the other one and all that turns with it is at rest.
+  // The own hull moves; the other one is at rest, turns included.
   Polygon OwnAsSeenByThing(double own_turning_s, double thing_turning_s, double time_s) const {
     const auto own_shift = ShiftOf(own, own_turning_s, time_s);
     const auto thing_shift = ShiftOf(thing, thing_turning_s, time_s);

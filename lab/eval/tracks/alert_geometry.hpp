@@ -48,7 +48,7 @@ struct ApproachQuestion {
 /// A closest approach within the time ahead. Where one of both turns nobody knows when the turn ends, so three ends of it count: at once, after 60
 /// degrees, and not within the time ahead.
 struct TrueApproach {
-  /// The least over all ends, within lenient_s. Infinite: both stand. What is beyond limit_m + kApproachCapM is only more than that.
+  /// The least over all ends, within lenient_s. Infinite: both stand. A distance beyond limit_m + kApproachCapM is only known to be more than that.
   double least_m = std::numeric_limits<double>::infinity();
   /// The greatest over the ends of the least distance within ahead_s, in the same way.
   double greatest_m = std::numeric_limits<double>::infinity();
@@ -58,7 +58,7 @@ struct TrueApproach {
   double until_limit_s = std::numeric_limits<double>::infinity();
 };
 inline constexpr double kApproachCapM = 5.0;
-/// What is slower over ground stands: a boat that rolls in its berth moves by some centimetres a second.
+/// A slower thing stands: a boat that rolls in its berth moves by some centimetres a second.
 inline constexpr double kStandsBelowMps = 0.1;
 
 /// Error: below 0.05 s of the relative motion. Cost: one gap for each 0.1 s in which both are nearer than limit_m + kApproachCapM, and few others.

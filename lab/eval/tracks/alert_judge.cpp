@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-// An alert takes some scans to come up: what was true in one of them counts.
+// An alert takes some scans to come up: a state that was true in one of them counts.
 constexpr std::int64_t kLooksUs = 500'000;
 // A danger may be out of sight, or above the limit, for some scans.
 constexpr std::int64_t kGapUs = 400'000;
@@ -164,12 +164,12 @@ bool AlertJudge::IsRepeated(const JudgedAlert& alert, const AlertThing& thing, s
     is_much_nearer = is_much_nearer && alert.distance_m < kNearerThanHalf * told.first_distance_m;
     is_on_other_side = is_on_other_side && SideOf(alert.bearing_rad, told.bearing_rad) > kOtherSideRad;
   }
-  // Land goes on for long: that it is told once does not tell where it comes near next.
+  // Land goes on for long: one alert of it does not tell where it comes near next.
   const bool is_news = !thing.is_in_water && (is_much_nearer || is_on_other_side);
   return is_told && !is_news;
 }
 
-// What the look-out believed of the thing that made it speak.
+// The look-out's belief about the thing that made it speak.
 AlertFault AlertJudge::FaultOf(const JudgedAlert& alert, const Evaluated* found, AlertVerdict verdict) const {
   if (verdict == AlertVerdict::kRight || verdict == AlertVerdict::kBorder) return AlertFault::kNone;
   if (found == nullptr) return AlertFault::kNothingThere;

@@ -13,7 +13,7 @@
 
 namespace lookout::eval {
 
-/// What the boat's config says of its alerts.
+/// The alert limits of the boat's config.
 struct AlertRules {
   double cpa_limit_m = 5.0;
   double look_ahead_s = 30.0;
@@ -21,7 +21,7 @@ struct AlertRules {
   GuardZoneParams zone = {};    // range 0: none
 };
 
-/// Nearer than this to where an alert tells it, a thing is what the alert means.
+/// A thing nearer than this to the place that an alert tells is the one that the alert means.
 inline constexpr double kAlertGateM = 3.0;
 /// So far beyond a limit an alert is still right, and from so far on it is far.
 inline constexpr double kRightWithinM = 1.0;
@@ -43,13 +43,13 @@ class AlertJudge {
 
   /// The next scan. Cost: an approach of each thing that can come near (ApproachWithin).
   void Add(const AlertScan& scan);
-  /// The end of the run: what stands is counted.
+  /// The end of the run: open alerts and dangers are counted.
   void Finish();
 
   const AlertScores& scores() const { return scores_; }
 
  private:
-  // What is true of a thing at one scan.
+  // The truth about a thing at one scan.
   struct Look {
     std::int64_t utime_us = 0;
     TrueApproach approach;
@@ -68,7 +68,7 @@ class AlertJudge {
     bool is_warning = false;
     bool is_in_berth = false;  // when it came up
   };
-  // That a thing is told by an alert.
+  // The telling of a thing by an alert.
   struct Told {
     std::int64_t alert_id = 0;
     int group = 0;

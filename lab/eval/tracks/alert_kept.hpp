@@ -1,4 +1,4 @@
-// What the tracker reads in a run, kept in a file: judging it again then costs no rays and none of the services before the tracker.
+// The inputs of the tracker in a run, kept in a file: judging it again then costs no rays and none of the services before the tracker.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What alerts are judged on: what is true after one scan, and what ALERTS say of it. Map frame: east, north at one datum.
+// Inputs of the judge of alerts: the truth after one scan, and its ALERTS. Map frame: east, north at one datum.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,11 +12,11 @@
 
 namespace lookout::eval {
 
-/// What an alert names by its track.
+/// The track of an alert.
 struct AlertTrackPlace {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   Polygon outline_m;                                       // empty: the position alone is known
-  Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();  // as TRACKS have it: 0 of what stands
+  Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();  // as TRACKS have it: 0 of a standing track
 };
 
 /// One alert of one message, as much of it as is judged: ToJudgedAlert makes it.
@@ -28,7 +28,7 @@ struct JudgedAlert {
   bool holds = false;                    // active or acknowledged: not over
   bool is_open = false;                  // holds, and nobody has acknowledged it
   bool sounds = false;                   // it is the one that ALERTS let sound
-  std::int64_t track_id = 0;             // 0 = of none: land, or what has none
+  std::int64_t track_id = 0;             // 0 = of none: land, or a thing without a track
   std::optional<AlertTrackPlace> track;  // where TRACKS had it last; nullopt: they never did
   double distance_m = 0.0;               // told: from the own hull, of a zone from the reference point
   double bearing_rad = 0.0;              // told: from the bow clockwise
@@ -41,7 +41,7 @@ struct AlertThing {
   int group = 0;  // the same for pieces of land and structures that belong together; else the id
   std::string name;
   std::string kind;
-  bool is_in_water = false;  // a boat, swimmer, buoy, marker: what is not is land, or a structure
+  bool is_in_water = false;  // a boat, swimmer, buoy, marker; all else is land, or a structure
   std::shared_ptr<const HullOutline> outline_m;
   MovingHull motion;
   int num_returns = 0;  // in this scan

@@ -1,4 +1,4 @@
-// What alerts scored on runs: additive over runs, scenes and worlds.
+// Scores of alerts on runs: additive over runs, scenes and worlds.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ enum class AlertVerdict { kRight, kBorder, kFar, kNothing, kRepeated };
 inline constexpr std::size_t kNumAlertVerdicts = 5;
 std::string_view NameOf(AlertVerdict verdict);
 
-/// Why an alert is far, nothing or repeated: what the look-out believed, held against what is true. ALERTS.md defines each.
+/// Why an alert is far, nothing or repeated: the look-out's belief compared with the truth. ALERTS.md defines each.
 enum class AlertFault { kNone, kPieceMoves, kStandingMoves, kOtherCourse, kNothingThere, kTooNear, kTwoTracks, kToldAgain };
 inline constexpr std::size_t kNumAlertFaults = 8;
 std::string_view NameOf(AlertFault fault);

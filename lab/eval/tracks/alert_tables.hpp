@@ -9,7 +9,7 @@
 
 namespace lookout::eval {
 
-/// What alerts scored on the runs of a scene.
+/// Scores of alerts on the runs of a scene.
 struct AlertRow {
   std::string scene;  // with "second world: " before it, or as it is
   AlertScores scores;
@@ -19,7 +19,7 @@ struct AlertRow {
 struct AlertWorld {
   std::string name;
   std::vector<AlertRow> scenes;  // one row of each (AddUpAlerts)
-  std::string over_all;          // what the row over all of them is called
+  std::string over_all;          // name of the row over all of them
 };
 
 /// One row of each scene: runs of one are added. Order: as they come first.

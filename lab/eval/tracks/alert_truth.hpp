@@ -1,4 +1,4 @@
-// What is true after a scan, in the map frame of the boat, as alerts are judged on it.
+// The truth after a scan, in the map frame of the boat, by which alerts are judged.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ class AlertTruth {
 
  private:
   struct Known {
-    AlertThing thing;  // of what stands whole, of all else without outline and motion
+    AlertThing thing;  // of a standing thing complete, of all others without outline and motion
     bool is_moving = false;
   };
   MovingHull MotionOf(int id, std::int64_t utime_us) const;

@@ -15,7 +15,7 @@ namespace {
 
 using Pair = std::pair<int, std::int64_t>;  // thing, track
 
-// Who takes part in a scan, and the pairs of these that are somehow alike.
+// The things and tracks that take part in a scan, and the pairs of these that are somehow alike.
 struct Participants {
   std::vector<int> things;
   std::vector<std::int64_t> tracks;
@@ -36,7 +36,7 @@ Participants ParticipantsOf(const TrueScan& scan, const Matched& matched) {
   return all;
 }
 
-// How long each takes part, and how long each pair could have been together: what an assignment shall prefer.
+// How long each takes part, and how long each pair could have been together: the preference of the assignment.
 struct Presence {
   std::map<int, std::int64_t> of_thing;
   std::map<std::int64_t, std::int64_t> of_track;

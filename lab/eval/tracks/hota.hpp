@@ -11,8 +11,8 @@
 
 namespace lookout::eval {
 
-/// 1 where hulls touch or overlap, 0 from the gate on, straight in between. At every threshold above 0 what is a pair is one for MOTA, too.
-/// An overlap is 1 however well two hulls agree: HOTA here says how well things are found and told apart; how far off places are, GOSPA says.
+/// 1 where hulls touch or overlap, 0 from the gate on, straight in between. A pair at every threshold above 0 is one for MOTA, too. An overlap is 1
+/// however well two hulls agree: HOTA here says how well things are found and told apart; GOSPA says how far off places are.
 double SimilarityOf(double gap_m);
 
 /// Higher Order Tracking Accuracy of one run or several (Add).
@@ -38,7 +38,7 @@ struct Hota {
   void Add(const Hota& other);
 };
 
-/// @param run  [scans] of truth. Things that must be tracked take part, and tracks that are not excused: who takes part for MOTA does here
+/// @param run  [scans] of truth. Things that must be tracked take part, and tracks that are not excused: the same ones as in MOTA
 /// Deterministic. Cost: as CheapestAssignment of each scan.
 Hota HotaOf(std::span<const TrueScan> truth, std::span<const Matched> run);
 

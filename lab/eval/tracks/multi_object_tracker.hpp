@@ -21,7 +21,7 @@ class MultiObjectTracker {
   virtual std::string name() const = 0;
 
   /// @param scan  the next one, with all parts of its OBSTACLES; those of status OK are on the map
-  /// @return what it now knows, at the end of the scan
+  /// @return its tracks at the end of the scan
   virtual std::vector<TrackState> Update(const messages::ScanMessages& scan) = 0;
 };
 

@@ -1,4 +1,4 @@
-// What figures of runs shall reach, and what they reach.
+// Targets for figures of runs, and the reached values.
 #pragma once
 
 #include <algorithm>
@@ -73,7 +73,7 @@ Reached ReachedBy(const Target<Scores>& target, const std::vector<Row>& rows, Sc
   return reached;
 }
 
-/// What, target, what is reached, whether that is enough, and the worst scene.
+/// Name, target, reached value, whether that is enough, and the worst scene.
 template <typename Scores>
 Table::Row TargetCells(const Target<Scores>& target, const Reached& reached) {
   return {target.what, target.Text(), NumberOrNever(reached.all, target.decimals), target.IsReachedBy(reached.all) ? "yes" : "MISSED",

@@ -55,7 +55,7 @@ Places TruthAt(const importer::FerryTruth& truth, std::int64_t utime_us) {
   return places;
 }
 
-// Who belongs to whom, scan after scan, by centres.
+// Assignment by centres, scan after scan.
 class FerryIdentities {
  public:
   std::int64_t CountSwitches(const Places& truths_m, const std::vector<const TrackState*>& tracks) {
@@ -162,7 +162,7 @@ Table::Row RowOf(const std::string& scenario, const std::string& tracker, std::s
   return row;
 }
 
-// What the boat's tracker shall reach, over all scans: below the best of a multi-hypothesis tracker (VIMMJIPDA) and of a plain one with existence and
+// Targets of the boat's tracker, over all scans: below the best of a multi-hypothesis tracker (VIMMJIPDA) and of a plain one with existence and
 // optimal assignment, both with settings of their own for these data and on more scenarios of the same kind.
 struct FerryTarget {
   std::string_view group;
@@ -173,7 +173,7 @@ constexpr std::array<FerryTarget, 6> kFerryTargets{
     {{"open water", 0, 7.4}, {"open water", 1, 8.6}, {"open water", 2, 10.7}, {"channel", 0, 3.2}, {"channel", 1, 4.6}, {"channel", 2, 9.0}}};
 constexpr std::int64_t kMostFerrySwitches = 1;
 
-// What a tracker must know of its boat: milliAmpere is 5 m long and 2.8 m wide; where its lidar is does not matter to detections. All else is as the
+// Facts of the boat for its tracker: milliAmpere is 5 m long and 2.8 m wide; where its lidar is does not matter to detections. All else is as the
 // schemas have it.
 class FerryConfig {
  public:

@@ -36,7 +36,7 @@ struct FerryScores {
 FerryScores ScoreFerry(const std::vector<importer::FerryScan>& scans, const importer::FerryTruth& truth,
                        const std::vector<std::vector<TrackState>>& tracks);
 
-/// What each tracker said after each scan: `trackers`, and before them the boat's own, where replay can run it.
+/// The tracks of each tracker after each scan: `trackers`, and before them the boat's own, where replay can run it.
 struct FerryTracks {
   std::string tracker;
   std::vector<std::vector<TrackState>> tracks;

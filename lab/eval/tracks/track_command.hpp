@@ -16,13 +16,13 @@ namespace lookout::eval {
 struct TrackOptions : RunOptions {
   /// Folders of captures, each a world of its own. One without truth of returns has that of its objects alone: no labels are scored.
   std::vector<std::filesystem::path> captures;
-  std::filesystem::path lost_file;       // what costs MOTA, a row of CSV for each scan and thing or track; empty = none
+  std::filesystem::path lost_file;       // causes of a lower MOTA, a row of CSV for each scan and thing or track; empty = none
   bool has_ablation = false;             // the boat's tracker without each of its parts beside it, in one table
   std::set<std::string> left_out;        // families whose runs have evidence that was fitted without them (LeaveOutEvidence); one table of labels
   std::filesystem::path weights_folder;  // of that evidence
 };
 
-/// What stands beside the boat's own tracker in each table. A further tracker is a further line here.
+/// Trackers beside the boat's own in each table. A further tracker is a further line here.
 MultiObjectTrackers MakeTrackers();
 
 /// Runs all services on each scene and seed, and on each capture, and prints the tables to stdout, progress to stderr. @return exit code

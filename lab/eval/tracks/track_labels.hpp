@@ -1,4 +1,4 @@
-// Labels of returns by tracks: what a tracker says of the pieces, or else of the segments, of a scan.
+// Labels of returns by tracks: the tracker's answer for the pieces, or else for the segments, of a scan.
 #pragma once
 
 #include <map>
@@ -25,7 +25,7 @@ class TrackLabels {
 
   /// @param segment  label of SEGMENTS, above 0
   /// @param piece    of SEGMENTS
-  /// @return label from 1 on. What no track explains has one of its segment's own.
+  /// @return label from 1 on. A return that no track explains has one of its segment's own.
   int Of(int segment, int piece) const;
 
  private:

@@ -12,8 +12,8 @@
 
 namespace lookout::eval {
 
-/// A track may belong to a thing no farther than this, hull to hull. Outlines of what is seen from one side and of what is true overlap but for
-/// errors of position, so that IoU says little of small things: a buoy of 0.5 m that is 0.5 m off has none.
+/// A track may belong to a thing no farther than this, hull to hull. Outlines seen from one side and true ones overlap but for errors of position, so
+/// that IoU says little of small things: a buoy of 0.5 m that is 0.5 m off has none.
 inline constexpr double kTrackGateM = 2.0;
 /// Returns from which on a thing in the water must be tracked; one with fewer may be, and counts neither way.
 inline constexpr int kMinReturnsOfExpected = 5;
@@ -38,8 +38,8 @@ struct Matched {
 
 /// Pairs of the scan before stay while they are within the gate (CLEAR MOT); the others are assigned so that as many as can have a partner, and the
 /// gaps between hulls, and then the distances of centres, are least in sum. Things that need not be tracked take part, since a track that is nearer
-/// to one of them is not a hit of another. Land takes none, and what has no return now takes no new one: a track that lies there is left out. Cost:
-/// things x tracks x corners per scan.
+/// to one of them is not a hit of another. Land takes none, and a thing without a return now takes no new one: a track that lies there is left out.
+/// Cost: things x tracks x corners per scan.
 class Matcher {
  public:
   /// @param all_tracks  outlive the result

@@ -1,4 +1,4 @@
-// Scores of tracks against the truth, of whole runs. README.md, "Tracks", says the same in words.
+// Scores of tracks against the truth, of whole runs. TRACKS.md says the same in words.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,14 +16,14 @@
 
 namespace lookout::eval {
 
-/// When another boat is too near: as the boat's tracker is told (cpa_limit_m and look_ahead_s of tracker.txtpb; these are its defaults).
+/// When another boat is too near: limits of the boat's tracker (cpa_limit_m and look_ahead_s of tracker.txtpb; these are its defaults).
 struct ApproachLimits {
   double limit_m = 5.0;  // hull to hull
   double look_ahead_s = 30.0;
 };
 
-/// What is wrong in a scan, for people who look for the reason: what costs MOTA, and what stands and is said to move, or moves
-/// and is said to stand.
+/// Errors in a scan, for people who look for the reason: those that cost MOTA, standing things that are said to move, and moving ones that are said
+/// to stand.
 struct TrackEvent {
   enum class What { kMissed, kFalse, kSwitch, kMoving, kStanding };
   What what = What::kMissed;
@@ -32,11 +32,11 @@ struct TrackEvent {
   int num_returns = 0;                                   // of the thing
   std::int64_t track = 0;                                // 0 = none
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  // of the thing; of a false track
-  // Of a false track the thing, of what was missed the track (of any status) whose hull is nearest, and the gap; of a switch the track before; 0 =
+  // Of a false track the thing, of a missed thing the track (of any status) whose hull is nearest, and the gap; of a switch the track before; 0 =
   // none.
   std::int64_t nearest = 0;
   double nearest_gap_m = 0.0;
-  double speed_mps = 0.0;  // as the track says; of what is said to stand, the true one
+  double speed_mps = 0.0;  // as the track says; of a thing that is said to stand, the true one
 };
 
 /// Probabilities, and whether it came so, in ten bins.
@@ -104,7 +104,7 @@ struct TrackScores {
   // more than half of the directions in which their outline lies around their centre.
   Summary center_error_m;
 
-  // Of what moves and comes nearer, at the scan in which the true TCPA falls below 10 s: both truly keep course and speed from there.
+  // Of a moving thing that comes nearer, at the scan in which the true TCPA falls below 10 s: both truly keep course and speed from there.
   Mean cpa_error_m;
   Mean tcpa_error_s;
   std::int64_t num_crossings = 0;
@@ -131,10 +131,10 @@ struct TrackScores {
 };
 
 /// @param truth   scans of a run in the order of time
-/// @param tracks  [scans] what the tracker said after each
-/// @param alerts  [scans] the same; empty: it has none
-/// Matcher says who belongs to whom in a scan. A track that is left counts as false, unless it is within the gate of what is there and need not be
-/// tracked: what has fewer returns or is hidden, docks, piers, land.
+/// @param tracks  [scans] the tracker's tracks after each
+/// @param alerts  [scans] its alerts; empty: it has none
+/// Matcher assigns tracks to things in a scan. A remaining track counts as false, unless it is within the gate of a thing that need not be tracked:
+/// one with fewer returns, a hidden one, docks, piers, land.
 TrackScores ScoreTracks(std::span<const TrueScan> truth, std::span<const std::vector<TrackState>> tracks,
                         std::span<const std::vector<StatedAlert>> alerts = {}, const ApproachLimits& limits = {});
 

@@ -86,7 +86,7 @@ class TrackRun {
     std::vector<std::vector<StatedAlert>> alerts;  // by scan
     bool has_come = false;
   };
-  // What waits for TRACKS.
+  // Scans that wait for TRACKS.
   struct Waiting {
     std::size_t index = 0;  // of the scan
     std::vector<LabelledReturn> returns;

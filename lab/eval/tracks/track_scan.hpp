@@ -1,4 +1,4 @@
-// What tracks are scored on: what is true after one scan, and what a tracker says of it. Map frame: east, north at one datum.
+// Inputs of the scores of tracks: the truth after one scan, and a tracker's tracks. Map frame: east, north at one datum.
 #pragma once
 
 #include <Eigen/Core>

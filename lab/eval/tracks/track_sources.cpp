@@ -95,7 +95,7 @@ std::map<int, Polygon> ReadShapes(const fs::path& file) {
 
 GeographicLib::LocalCartesian MapAt(double latitude_deg, double longitude_deg) { return {latitude_deg, longitude_deg, 0.0}; }
 
-// Rows are by scan: what was true of an object before stands behind it.
+// Rows are by scan: earlier rows of an object stand behind it.
 struct LastRow {
   std::int64_t utime_us = 0;
   std::vector<Geodetic> outline;

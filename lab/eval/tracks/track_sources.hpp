@@ -1,4 +1,4 @@
-// Where runs to be tracked come from: what the sensors of a boat send, with the truth.
+// Sources of runs to be tracked: the sensors' messages of a boat, with the truth.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace lookout::eval {
 
-/// What the judging of tracks and that of alerts are asked for alike.
+/// Options that the judging of tracks and that of alerts share.
 struct RunOptions {
   std::filesystem::path config_folder;
   RunPlan plan;                                    // scenes may be none

@@ -104,7 +104,7 @@ NamedTable Approaches(const std::vector<TrackRow>& rows) {
   return {"tracks_approaches", "tracks: closest approach, and what was warned of", std::move(table)};
 }
 
-// A row for the labels of single scans, which are the same whoever tracks, then one for each tracker.
+// A row for the labels of single scans, which are the same for all trackers, then one for each tracker.
 NamedTable Labels(const std::vector<TrackRow>& rows) {
   Table table({"scene", "labels", "scans (all: scenes)", "land_apart_%", "mIoU_%", "gain", "land_%", "land_too_many", "lost_%", "PQ_%", "SQ_%",
                "RQ_%", "OSE", "USE"});

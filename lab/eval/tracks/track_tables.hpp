@@ -1,4 +1,4 @@
-// Tables of scores of tracks: one for each family of figures. README.md, "Tracks", defines the columns.
+// Tables of scores of tracks: one for each family of figures. TRACKS.md defines the columns.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace lookout::eval {
 
-/// What a tracker scored on the runs of a scene.
+/// Scores of a tracker on the runs of a scene.
 struct TrackRow {
   std::string scene;  // with "second world: " before it, or as it is
   TrackRun::Row row;

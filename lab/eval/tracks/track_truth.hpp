@@ -1,4 +1,4 @@
-// What is true after a scan, in the map frame of the boat.
+// The truth after a scan, in the map frame of the boat.
 #pragma once
 
 #include <array>

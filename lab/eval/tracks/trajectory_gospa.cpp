@@ -24,7 +24,7 @@ constexpr int kNoPartner = -1;
 struct Candidate {
   int estimate = kNoPartner;
   std::size_t first = 0;        // scan
-  std::vector<double> gain_m2;  // from that scan on: what the pair saves against a miss and a false one
+  std::vector<double> gain_m2;  // from that scan on: gain of the pair over a miss and a false one
 
   double GainAt(std::size_t scan) const { return scan >= first && scan - first < gain_m2.size() ? gain_m2[scan - first] : 0.0; }
 };
@@ -199,7 +199,7 @@ class TrajectoryAssignment {
     }
   }
 
-  // What is cheapest from scan to scan.
+  // The cheapest assignment from scan to scan.
   void BeginByScan() {
     std::vector<int> held(truths_.size(), kNoPartner);
     std::vector<bool> had_one(truths_.size());
@@ -301,7 +301,7 @@ class TrajectoryAssignment {
     const auto assigned = CheapestAssignment(cost);
     for (std::size_t row = 0; row < rows.size(); ++row) {
       const auto k = static_cast<std::size_t>(assigned[row]);
-      // What saves nothing and was not held is no candidate, or none now.
+      // A pair that saves nothing and was not held is no candidate, or none now.
       const int estimate = k < columns.size() ? columns[k] : kNoPartner;
       held[rows[row]] = estimate == held[rows[row]] || truths_[rows[row]].GainAt(scan, estimate) > 0.0 ? estimate : kNoPartner;
     }

@@ -14,7 +14,7 @@ namespace lookout::eval {
 /// Price of a change of partner, gamma: gamma^2 = c^2 / 2, so that a change costs as much as a miss does, as in MOTA.
 inline constexpr double kSwitchCostM = 14.142135623730951;
 
-/// Who is where in a scan; an id once at most in each.
+/// Ids and places in a scan; an id once at most in each.
 struct TrajectoryScan {
   std::vector<std::pair<std::int64_t, Eigen::Vector2d>> truths_m;
   std::vector<std::pair<std::int64_t, Eigen::Vector2d>> estimates_m;

@@ -35,7 +35,7 @@ std::vector<ObstaclePart> Georeferencer::AddPose(const Pose& pose) {
       return released;
     }
     if (pose.time < newest->time) {
-      // A new run, in the past of the one before. What waits and lies so far ahead of it belongs to the old run.
+      // A new run, in the past of the one before. Segments that wait and lie so far ahead of it belong to the old run.
       ++counts_["pose_restarts"];
       while (!waiting_.empty() && waiting_.front().part.head.time - pose.time > PoseHistory::kLength) {
         ++counts_["parts_flushed"];
@@ -55,7 +55,7 @@ std::vector<ObstaclePart> Georeferencer::AdvanceTo(Utime host_time) {
   std::vector<ObstaclePart> released;
   host_time_ = host_time;
   for (auto& waiting : waiting_) {
-    // What came before host time was known, or before the host's clock was set back, begins to wait now.
+    // Segments that came before host time was known, or before the host's clock was set back, begin to wait now.
     waiting.arrival = std::min(waiting.arrival.value_or(host_time), host_time);
   }
   pose_arrival_ = std::min(pose_arrival_.value_or(host_time), host_time);

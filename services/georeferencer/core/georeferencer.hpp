@@ -26,15 +26,15 @@ class Georeferencer {
 
   Georeferencer(const PlacementParams& placement, std::chrono::microseconds pose_timeout);
 
-  /// Each of these returns what can be released now, in the order in which the segments came.
+  /// Each of these returns the segments that can be released now, in the order in which they came.
   std::vector<ObstaclePart> AddSegments(SegmentPart part);
   std::vector<ObstaclePart> AddPose(const Pose& pose);
 
-  /// Live only. What has waited for longer than the time-out by the host's clock is released, and everything while POSE has not come for twice that
-  /// long; a part, or a pose, has arrived at the host time of the call before it came.
+  /// Live only. Segments that have waited for longer than the time-out by the host's clock are released, and all of them while POSE has not come for
+  /// twice that long; a part, or a pose, has arrived at the host time of the call before it came.
   std::vector<ObstaclePart> AdvanceTo(Utime host_time);
 
-  /// End of input: what waits is released, with the poses that are there.
+  /// End of input: waiting segments are released, with the poses that are there.
   std::vector<ObstaclePart> Finish();
 
   std::int64_t num_waiting() const { return static_cast<std::int64_t>(waiting_.size()); }

@@ -30,7 +30,7 @@ struct Rating {
   float seen_share = 1.0F;                                            // 0 to 1, of the columns from its first to its last
 };
 
-/// What an obstacle has of its segment.
+/// Members that an obstacle takes from its segment.
 struct Seen {
   Utime time;  // mean of the times of its returns
   std::int32_t id = 0;
@@ -52,7 +52,7 @@ struct Segment : Seen {
   std::vector<HullVertex> waterline;  // of land, an open line, clockwise seen from the lidar's z axis; empty for others
 };
 
-/// What a SEGMENTS message and its OBSTACLES have in common.
+/// Members that a SEGMENTS message and its OBSTACLES share.
 struct ScanHead {
   Utime time;
   Utime end_time;  // last laser shot

@@ -87,8 +87,8 @@ std::vector<Vector2d> SeenFromAbove(const std::vector<Vector3d>& points) {
   return flat;
 }
 
-// Corners are placed at the mean height of their segment. On a boat that is level it does not matter; else their own height moves them by what the
-// lidar's axis leans. Heights are taken as evenly spread from the lowest to the highest return.
+// Corners are placed at the mean height of their segment. On a level boat that does not matter; else their own height moves them by the lean of the
+// lidar's axis. Heights are taken as evenly spread from the lowest to the highest return.
 Matrix2d HeightCovariance(const Segment& segment, const Pose& pose, const PlacementParams& params) {
   Vector3d axis_here = RotationMapVessel(pose.heading_rad, pose.pitch_rad, pose.roll_rad) * params.T_vessel_lidar.linear().col(2);
   axis_here.z() = 0.0;

@@ -55,8 +55,8 @@ Eigen::Vector3d FootprintCenter(const std::vector<Eigen::Vector3d>& vertices);
 /// Error: within 5 % of a Monte Carlo run for standard deviations of up to 5 degrees (property test georeferencer_covariance).
 Eigen::Matrix2d PositionCovariance(const Eigen::Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params);
 
-/// The same of the point relative to the vessel's origin: as if its position were known. Two points that are seen from one boat share the error of
-/// its position, and it is not in their distance from each other or from the boat.
+/// The same of the point relative to the vessel's origin, without the error of its position. Two points seen from one boat share that error, and it
+/// is not in their distance from each other or from the boat.
 Eigen::Matrix2d RelativeCovariance(const Eigen::Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params);
 
 /// Places a segment. p_map = T_map_vessel * T_vessel_lidar * p_lidar, each corner of outline and waterline with T_map_vessel at its own time;

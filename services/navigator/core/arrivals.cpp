@@ -9,8 +9,8 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::microseconds;
 
-// A queue that is drained at one and a third of the usual rate has become shorter by a quarter of the while in it. What is drained more slowly is
-// counted as a loss, and the lateness that is left as a delay.
+// A queue that is drained at one and a third of the usual rate has become shorter by a quarter of that while. Sentences that are drained more slowly
+// count as a loss, and their remaining lateness as a delay.
 constexpr microseconds kMinWhile = 300ms;
 constexpr int kMinIntervalsInWhile = 2;
 constexpr int kShrinkingShare = 4;

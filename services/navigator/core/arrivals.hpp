@@ -8,15 +8,15 @@
 
 namespace lookout::navigator {
 
-/// The arrivals of one kind of sentence of one input. A sensor measures at an even interval. After a gap well beyond it, what comes faster than that
-/// is a queue that is drained: the n-th of it was measured n intervals after the gap began, and so is late by what is left of the gap. It may not
-/// count as measured on arrival, until the queue is empty. Where nothing comes faster, what fell into the gap is lost, and the first after it came in
-/// time.
+/// The arrivals of one kind of sentence of one input. A sensor measures at an even interval. After a gap well beyond it, sentences that come faster
+/// than that are a queue that is drained: the n-th of them was measured n intervals after the gap began, and so is late by the rest of the gap. It
+/// must not count as measured on arrival, until the queue is empty. Where nothing comes faster, the sentences of the gap are lost, and the first
+/// after it came in time.
 ///
 /// Depends on the stamps of the arrivals alone.
 class Arrivals {
  public:
-  /// What may be late by no more than this counts: buses and serial drivers give several at once.
+  /// A sentence that may be late by no more than this counts: buses and serial drivers deliver several at once.
   static constexpr std::chrono::milliseconds kMaxLateness{100};
   /// An interval is learned from so many, over so long.
   static constexpr int kMinCount = 10;

@@ -91,7 +91,7 @@ std::optional<std::chrono::minutes> OffsetOf(std::string_view text) {
   return text.front() == '-' ? -offset : offset;
 }
 
-// Of a time: without a head nobody knows of which zone one is that does not say it.
+// The zone of a time: without a head nobody knows the zone of a time that does not state it.
 bool SaysZone(std::string_view time) { return time.back() == 'Z' || time.back() == 'z' || time.find_last_of("+-") > time.find(':'); }
 
 }  // namespace

@@ -34,11 +34,11 @@ double WrapTilt(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapTo
 // The first of them that is known.
 double Or(double value, double otherwise) { return std::isnan(value) ? otherwise : value; }
 
-// A boat at rest has no course: what a receiver says there is the direction of its noise. Twice velocity_sd_mps of navigator.proto.
+// A boat at rest has no course: a receiver states the direction of its noise there. Twice velocity_sd_mps of navigator.proto.
 constexpr double kRestMps = 0.2;
 double CourseOf(double speed_mps, double course_rad) { return speed_mps < kRestMps ? kNan : course_rad; }
 
-// What receivers say that have no place yet, or have lost it, whatever their status. As precise as a sentence says a place, and a boat that is there
+// Values of receivers that have no place yet, or have lost it, whatever their status. As precise as a sentence states a place; a boat that is there
 // misses a fix.
 bool IsNull(const GeodeticPlace& place) {
   constexpr double kMetreDeg = 1e-5;
@@ -134,7 +134,7 @@ Reading Interpreter::Read(const Item& item) {
   if (parsed.sentence.type != SentenceType::kOther) {
     ++source.num_understood;
     ++counts_["understood_sentence"];
-    // What is only recorded does not correct the clock either.
+    // An input that is only recorded does not correct the clock either.
     if (source.params.role == Role::kNothing) {
       ++counts_["outside_role"];
       return {};
@@ -189,8 +189,7 @@ Reading Interpreter::ReadUnderstood(const Item& item, Source& source, const Sent
   }
 }
 
-// Of a sentence without a time; nullopt: it waited in a queue for an unknown time. The first behind a timed one of its input was as late as
-// that.
+// Time of a sentence without one; nullopt: it waited in a queue for an unknown time. The first behind a timed one of its input was as late as that.
 std::optional<MeasurementTime> Interpreter::WhenArrived(const Item& item, Source& source, SentenceType type) {
   if (source.is_in_time) return clock_.OfArrival(source.clock, item.time, source.params.latency);
   auto& told_by = source.told_by[IndexOf(type)];
@@ -211,7 +210,7 @@ std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& sourc
     if (!source.epoch) return WhenArrived(item, source, sentence.type);
     const auto& epoch = source.epoch->fix.when;
     if (item.time - epoch.arrival <= UtcClock::kBurst) return epoch;
-    // It tells the place of an epoch that is over: at its arrival it would draw a boat that moves back.
+    // The sentence tells the place of an epoch that is over: at its arrival it would draw a boat that moves back.
     constexpr std::chrono::seconds kTimedFixes(2);
     if (epoch.has_sentence_utc && item.time - epoch.arrival <= kTimedFixes) return std::nullopt;
     return WhenArrived(item, source, sentence.type);
@@ -302,7 +301,7 @@ Reading Interpreter::ReadVelocity(const Item& item, Source& source, const Senten
   // Behind the fix of its epoch it is of the same instant; it has no time of its own.
   if (source.null_fix && item.time - *source.null_fix <= kMaxNullAge) return {};  // a receiver without a place has no speed
   const bool is_of_epoch = source.epoch && item.time - source.epoch->fix.when.arrival <= UtcClock::kBurst;
-  // What RMC says of the same instant is the same measurement.
+  // RMC of the same instant is the same measurement.
   if (is_of_epoch && !std::isnan(source.epoch->fix.speed_mps)) return {};
   const auto when = is_of_epoch ? std::optional(source.epoch->fix.when) : WhenArrived(item, source, vtg.type);
   if (!when) return {};

@@ -1,4 +1,4 @@
-// What the sentences of all sources measured, and when: from an item to measurements.
+// The measurements of the sentences of all sources, and their times: from an item to measurements.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ enum class Role {
   kNothing,   // recorded only
 };
 
-/// What config says of one source of sentences, as far as its sentences are read by it.
+/// The settings of one source of sentences, as far as they concern its sentences.
 struct SourceParams {
   std::string name;  // as in NAV_RAW
   Role role = Role::kAll;
@@ -40,12 +40,12 @@ struct SourceParams {
   // Factors that turn the sensor's signs into ours: +1 where roll is positive starboard down, and pitch positive bow up.
   double roll_sign = 1.0;
   double pitch_sign = 1.0;
-  // Of the compass, where the sentence says none; positive east.
+  // Deviation and declination of the compass, where the sentence says none; positive east.
   std::optional<double> deviation_rad;
   std::optional<double> declination_rad;
 };
 
-/// What one sentence measured.
+/// The measurements of one sentence.
 struct Reading {
   std::optional<GnssFix> fix;
   std::optional<Attitude> attitude;
@@ -77,11 +77,11 @@ class Interpreter {
   /// Computer's clock less UTC; 0 while it counts as UTC.
   std::chrono::microseconds host_minus_utc() const { return clock_.host_minus_utc(); }
 
-  /// Of all sources, and then of each.
+  /// Counters of all sources together, and then of each.
   std::vector<Counter> counters() const;
 
  private:
-  /// What is known of the epoch of a receiver.
+  /// The known values of the epoch of a receiver.
   struct Epoch {
     GnssFix fix;
     bool has_gga = false;

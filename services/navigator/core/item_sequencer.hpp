@@ -17,7 +17,7 @@ class ItemSequencer {
   static constexpr std::chrono::milliseconds kTickPeriod{100};
   /// The host clock was set back when it is so much behind itself: a new start. Less than the second by which it is set back in a leap second.
   static constexpr std::chrono::milliseconds kMaxSetBack{400};
-  /// What came in by a queue and is so far off the last item is refused.
+  /// A sentence that came in by a queue and is so far off the last item is refused.
   static constexpr std::chrono::seconds kMaxStepBack{1};
   /// Ticks of a longer silence are left out: the computer slept, or its clock was set forward.
   static constexpr std::chrono::seconds kMaxTickGap{10};
@@ -33,7 +33,7 @@ class ItemSequencer {
   /// A sentence out of the lidar. It comes late, in a bundle, so it does not move the ticks.
   std::vector<Item> OnLidarSentence(Utime arrival, const std::string& sentence);
 
-  /// @return END after the ticks until then; nothing when nothing came before. What comes after it begins a new sequence.
+  /// @return END after the ticks until then; nothing when nothing came before. Later items begin a new sequence.
   std::vector<Item> Finish(Utime host_time);
 
   std::vector<Counter> counters() const { return {{"clock_set_back", num_clock_set_back_}, {"stale_sentence", num_stale_sentences_}}; }

@@ -10,7 +10,7 @@ namespace {
 
 bool IsPrintable(char character) { return character >= 0x20 && character <= 0x7E; }
 
-// What stands behind a tag block and junk; empty when there is no start of a sentence.
+// The text behind a tag block and junk; empty when there is no start of a sentence.
 std::string_view FromStart(std::string_view line) {
   const auto first = line.find_first_of("\\$!");
   if (first == std::string_view::npos) return {};
@@ -86,7 +86,7 @@ bool IsSentence(std::string_view line) {
   return line.size() <= kMaxLineCharacters && std::ranges::all_of(line, IsPrintable) && Frame(line).fault == SentenceFault::kNone;
 }
 
-// What begins in text without a sentence that has a right checksum, as it stands.
+// Text that begins as a sentence but has no right checksum, as it stands.
 void AddAsItStands(std::string_view text, DatagramLines& result) {
   auto line = FromStart(text);
   // Behind bytes that are no text (another protocol on the same line) a whole sentence may stand.
@@ -179,7 +179,7 @@ DatagramLines SplitDatagram(Bytes payload) {
   return result;
 }
 
-// What was not given yet is a line of its own.
+// The text that was not given yet is a line of its own.
 void DatagramJoiner::GiveUp(const Held& held, std::string& text) {
   if (!held.is_given) text += held.text + "\n";
 }

@@ -26,9 +26,9 @@ struct DatagramLines {
   std::int64_t num_cut_off = 0;        // begins of sentences that another one follows on the same line, and that have no right checksum
 };
 
-/// Cuts at CR and LF, and drops what stands before the first $ or ! of a line (tag blocks (\...\) and junk) and blanks at its end. Where what is left
-/// is no sentence with a right checksum, but holds some, one behind the other without an end of line, behind what only begins as one, or before junk,
-/// each of them is a line.
+/// Cuts at CR and LF, and drops text before the first $ or ! of a line (tag blocks (\...\) and junk) and blanks at its end. Where the rest is no
+/// sentence with a right checksum, but holds some, one behind the other without an end of line, behind a false start, or before junk, each of them is
+/// a line.
 DatagramLines SplitDatagram(Bytes payload);
 
 /// @return whether `line` is $ or !, talker and type, and a comma, whatever stands behind it
@@ -43,18 +43,19 @@ bool IsLine(std::string_view line);
 /// @return whether `name` may stand in NAV_RAW for a source: 1 to 32 of a to z and 0 to 9
 bool IsSourceName(std::string_view name);
 
-/// Puts lines together that their senders cut over several datagrams, as gateways from serial lines do. What a datagram ends with is held back while
-/// it may go on: it begins as a line, and has neither an end of line nor a checksum. A sentence without a checksum looks like that, too: where those
-/// count it is returned at once, but for a datagram that goes on with a line itself, and once more as a part of the whole if it does go on.
+/// Puts lines together that their senders cut over several datagrams, as gateways from serial lines do. The end of a datagram is held back while it
+/// may go on: it begins as a line, and has neither an end of line nor a checksum. A sentence without a checksum looks like that, too: where those
+/// count it is returned at once, except for a datagram that goes on with a line itself, and once more as a part of the complete line if it does go
+/// on.
 class DatagramJoiner {
  public:
   /// So long the rest may be in coming: a gateway that sends full datagrams only keeps it until the next second of a receiver.
   static constexpr std::chrono::seconds kMaxWait{2};
-  /// Of so many senders at once something is held back.
+  /// Most senders of which text is held back at once.
   static constexpr std::size_t kMaxSenders = 64;
 
-  /// @param sender  address and port: what one sends is never joined to what another does
-  /// @return the lines that are whole now. The begin of a line that did not go on in time is one of them, so that it is recorded and counted.
+  /// @param sender  address and port: lines of two senders are never joined
+  /// @return the lines that are complete now. The begin of a line that did not go on in time is one of them, so that it is recorded and counted.
   DatagramLines Add(Utime arrival, Bytes payload, const std::string& sender, bool requires_checksum);
 
   /// @return begins of lines that did not go on until now
@@ -80,11 +81,11 @@ class DatagramJoiner {
 /// Cuts the bytes of a stream, which come in pieces of any size, into whole lines.
 class LineAssembler {
  public:
-  /// @return the lines that are whole now; what is not stays for the next call. A $ or ! behind a checksum ends a line, too. A line that does not end
-  ///         within kMaxLineCharacters several times over (another protocol, a wrong baud rate) is dropped and counted as too long.
+  /// @return the lines that are complete now; the rest stays for the next call. A $ or ! behind a checksum ends a line, too. A line that does not end
+  /// within kMaxLineCharacters several times over (another protocol, a wrong baud rate) is dropped and counted as too long.
   DatagramLines Add(Bytes bytes);
 
-  /// The connection broke: what is held will not be completed.
+  /// The connection broke: the held text will not be completed.
   void Clear() { rest_.clear(); }
 
  private:

@@ -33,8 +33,8 @@ class Navigator {
 
   explicit Navigator(const NavigatorParams& params);
 
-  /// Consumes the item; returns the poses of every whole 20 ms after the item before, up to this one. A start mark voids what was before; an end mark
-  /// adds one more pose, at or after its time.
+  /// Consumes the item; returns the poses of every whole 20 ms after the item before, up to this one. A start mark voids the earlier state; an end
+  /// mark adds one more pose, at or after its time.
   ///
   /// @param item  not before the last one, unless it is a start mark
   NavigatorOutput Consume(const Item& item);

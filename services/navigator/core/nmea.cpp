@@ -18,7 +18,7 @@ namespace {
 constexpr double kMpsPerKnot = 1852.0 / 3600.0;
 constexpr double kMpsPerKmh = 1.0 / 3.6;
 
-// Bounds of what can be.
+// Bounds of possible values.
 constexpr double kMaxSpeedMps = 100.0;   // of receivers on boats: 194 knots
 constexpr double kMinHeightM = -1000.0;  // the Dead Sea lies at -430 m
 constexpr double kMaxHeightM = 20'000.0;
@@ -38,7 +38,7 @@ constexpr double kMaxFieldGauss = 100.0;
 
 double AngleRad(FieldReader& fields, std::size_t index, double min_deg, double max_deg) { return DegToRad(fields.Number(index, min_deg, max_deg)); }
 
-// 360 is 0. What is not said stays so: WrapTo2Pi would make 0 of it.
+// 360 is 0. A missing value stays missing: WrapTo2Pi would make 0 of it.
 double WrapKnown(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapTo2Pi(angle_rad); }
 
 double CompassRad(FieldReader& fields, std::size_t index) { return WrapKnown(AngleRad(fields, index, 0.0, 360.0)); }
@@ -81,7 +81,7 @@ void ReadRmc(FieldReader& fields, Sentence& sentence) {
   if (status == 'A') sentence.quality = mode == '\0' ? FixQuality::kGnss : QualityOfMode(mode);
 }
 
-// Of a sentence that is too short: a number that does not stand with its unit says nothing.
+// A height of a sentence that is too short: a number that does not stand with its unit says nothing.
 double NumberWithUnitOrNan(const FieldReader& fields, std::size_t index, double min, double max) {
   FieldReader reader = fields;
   const double number = reader.NumberWithUnit(index, 'M', min, max);
@@ -121,7 +121,7 @@ void ReadGga(FieldReader& fields, Sentence& sentence) {
   sentence.geoid_separation_m = fields.NumberWithUnit(10, 'M', -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
 }
 
-// Of all systems the best, in the order of what they are worth.
+// The best of all systems, in the order of their accuracy.
 FixQuality QualityOfModes(FieldReader& fields, std::size_t index) {
   constexpr std::string_view kBestFirst = "RFDPAEMS";
   constexpr std::size_t kMaxSystems = 8;

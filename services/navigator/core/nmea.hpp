@@ -1,4 +1,4 @@
-// What the sentences that navigator understands say. What a sentence does not say is NaN, nullopt, or -1 in counts; angles are in radians.
+// The values of the sentences that navigator understands. A missing value is NaN, nullopt, or -1 in counts; angles are in radians.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 namespace lookout::navigator {
 
-/// Of a fix, as in GGA (the numbers of gnss_fix_t).
+/// Quality of a fix, as in GGA (the numbers of gnss_fix_t).
 enum class FixQuality {
   kNone = 0,
   kGnss = 1,
@@ -64,7 +64,7 @@ struct AttitudeValues {
   bool has_tilt() const { return !std::isnan(roll_rad) && !std::isnan(pitch_rad); }
 };
 
-/// What a strapdown sensor measures, along its own axes: x forward, y to starboard, z down.
+/// Values of a strapdown sensor, along its own axes: x forward, y to starboard, z down.
 struct StrapdownSample {
   Eigen::Vector3d angular_velocity_radps = kUnknownVector;
   Eigen::Vector3d specific_force_mps2 = kUnknownVector;  // at rest and level z is -9.81
@@ -109,7 +109,7 @@ struct ParseResult {
   Sentence sentence = {};  // only when there is no fault
 };
 
-/// Whoever the talker is, numbers too; of proprietary sentences PASHR, PSAT,HPR, PTNTHTM, VNINS, VNYMR and VNIMU.
+/// Of any talker, numbers too; of proprietary sentences PASHR, PSAT,HPR, PTNTHTM, VNINS, VNYMR and VNIMU.
 ///
 /// @param line               from $ or ! to the checksum
 /// @param requires_checksum  false: a line without * is accepted too, one with a wrong checksum never

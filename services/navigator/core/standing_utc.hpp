@@ -25,8 +25,7 @@ class StandingUtc {
   /// A place is another from so far on: the same one is told with 3 to 8 digits of a minute, which are up to 1 m apart.
   static constexpr double kLeastMoveM = 1.0;
 
-  /// Of one input.
-  ///
+  /// Takes a sentence of one input.
   /// @param sentence  with a time of day and a position
   /// @return whether its UTC has stood while places moved on
   bool Stands(Utime arrival, const Sentence& sentence);

@@ -21,7 +21,7 @@ class TimeZoneCheck {
   /// @return whether its time of day is off by whole quarter hours from one that says more: it is not to be used
   bool IsLocal(Utime now, const Sentence& sentence) const;
 
-  /// Whether the sentence tells a time, and no less of it than that by which others are refused.
+  /// Whether the sentence tells a time, and at least as much of it as the sentence by which others are refused.
   bool SaysAsMuch(const Sentence& sentence) const;
 
   /// The time of this sentence, which is not local, was used. It came at `now`.

@@ -14,7 +14,7 @@ using std::chrono::microseconds;
 
 // Other sources have been silent for so long that they do not contradict.
 constexpr std::chrono::seconds kSilence(5);
-// A second less what lies between two instants of a receiver, of 2 Hz and more.
+// A second less the interval of a receiver, of 2 Hz and more.
 constexpr std::chrono::milliseconds kMinLeapBack(400);
 // Of 1 Hz it says the same instant twice, so much apart; sentences of one instant come within half a second at 4800 baud.
 constexpr std::chrono::milliseconds kMinLeapRepeat(700);
@@ -26,7 +26,7 @@ bool UtcClock::IsBackward(SourceClock& source, Utime utc, bool has_date) {
   if (has_date && !source.has_date) source.last_utc.reset();
   source.has_date = source.has_date || has_date;
   if (!source.last_utc || utc >= *source.last_utc - kMaxBackward) {
-    // Those without a date follow the day of the others: they do not speak against a date that was set back.
+    // Sources without a date follow the day of the others: they do not speak against a date that was set back.
     if (has_date || !source.has_date) source.num_backward = 0;
     return false;
   }
@@ -65,7 +65,7 @@ void UtcClock::UseHostAsUtc() {
   off_ = microseconds(0);
 }
 
-// What a source says of the clock, once it is sure of it.
+// The clock error by one source, once it is sure.
 void UtcClock::CompareWithUtc(SourceClock& source, Utime arrival) {
   const auto off = source.fit.offset();
   const microseconds limit = std::max<microseconds>(max_latency_, kMinOff);

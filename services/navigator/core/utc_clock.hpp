@@ -10,7 +10,7 @@
 
 namespace lookout::navigator {
 
-/// What UtcClock remembers of one source.
+/// The state that UtcClock keeps of one source.
 struct SourceClock {
   std::optional<Utime> last_utc;   // of its measurements
   Utime last_time{};               // of the same, on the time scale of POSE
@@ -60,18 +60,18 @@ class UtcClock {
 
   /// A burst of sentences of one epoch is shorter than this at 9600 baud with three of them; epochs are 50 ms apart or more.
   static constexpr std::chrono::milliseconds kBurst{50};
-  /// Less is how sentences of one source differ. What is late by more waited somewhere.
+  /// Sentences of one source differ by less. A sentence that is late by more waited somewhere.
   static constexpr std::chrono::milliseconds kMinLateness{300};
 
-  /// Of a sentence without a time. Where one of the same source with a time came with it, kBurst before at most, and was late by `min_lateness` or
-  /// more, it was as late itself.
+  /// Lateness of a sentence without a time. Where one of the same source with a time came with it, kBurst before at most, and was late by
+  /// `min_lateness` or more, it was as late itself.
   MeasurementTime OfArrival(const SourceClock& source, Utime arrival, std::optional<std::chrono::microseconds> latency,
                             std::chrono::microseconds min_lateness = kMinLateness) const;
 
   /// Whether a sentence with a time came kBurst before `arrival` at most, whose lateness is known.
   static bool IsBehindTimedSentence(const SourceClock& source, Utime arrival);
 
-  /// What the time scale of POSE is ahead of UTC, leap seconds counted on: it steps where the clock is found off, or right again.
+  /// The lead of the time scale of POSE over UTC, leap seconds counted on: it steps where the clock is found off, or right again.
   std::chrono::microseconds pose_minus_even_utc() const { return off_; }
 
   /// Computer's clock less UTC; 0 while it counts as UTC.

@@ -82,7 +82,7 @@ std::string StreamSource::Poll(Utime now) {
     const bool is_time = !last_attempt_ || now - *last_attempt_ >= pause_ || now < *last_attempt_;
     if (is_time) {
       Attempt(now);
-      // A server of this computer answers at once: the next call says what has come of it.
+      // A server of this computer answers at once: the next call tells the result.
       if (state_ == State::kConnecting) return {};
     }
   }

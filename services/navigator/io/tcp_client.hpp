@@ -1,4 +1,4 @@
-// A TCP server that sends sentences to whoever connects.
+// A client of a TCP server that sends sentences.
 #pragma once
 
 #include <string>

@@ -39,12 +39,12 @@ class TextLogPlayer {
   /// @throws std::runtime_error as TextLogReader
   TextLogPlayer(const std::vector<Log>& logs, double speed);
 
-  /// Plays what is due.
+  /// Plays the due lines.
   void Play(std::chrono::steady_clock::time_point now, const Taker& taker);
 
   bool is_finished() const { return !next_; }
 
-  /// Of the first line of all, and of what was played last: UTC as the logs say.
+  /// Of the first line of all, and of the line played last: UTC as the logs say.
   Utime start() const { return start_; }
   Utime time() const { return time_; }
 

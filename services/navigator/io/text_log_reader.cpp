@@ -19,7 +19,7 @@ using std::chrono::sys_days;
 
 constexpr microseconds kDay = std::chrono::days(1);
 
-// What captures and lcm-logs begin with: gzip may have packed them.
+// First bytes of captures and lcm-logs: gzip may have packed them.
 constexpr std::array<std::string_view, 6> kOtherMagics{"\xA1\xB2\xC3\xD4", "\xD4\xC3\xB2\xA1", "\xA1\xB2\x3C\x4D",
                                                        "\x4D\x3C\xB2\xA1", "\x0A\x0D\x0D\x0A", "\xED\xA1\xDA\x01"};
 
@@ -93,7 +93,7 @@ void TextLogReader::FindColumns() {
   in_.Seek(0);
 }
 
-// The first date may be the one that is wrong: of the first ones that which most agree with. And the first time may be that of a zone.
+// The first date may be wrong: of the first ones the one that most others agree with. And the first time may be that of a zone.
 std::optional<Utime> TextLogReader::FindFirstTime(std::optional<sys_days> day) {
   struct Vote {
     sys_days day;  // of the first time
@@ -221,7 +221,7 @@ bool TextLogReader::ReadLine() {
       in_.Back();
       return true;
     }
-    // No sentence is so long: what goes is binary, and a sentence may stand behind it.
+    // No sentence is so long: the dropped bytes are binary, and a sentence may stand behind them.
     if (line_.size() == kMaxLineBytes && !columns_) line_.erase(0, kMaxLineBytes / 2);
     if (line_.size() < kMaxLineBytes) line_ += letter;
   }
@@ -266,7 +266,7 @@ std::optional<TextLogReader::Line> TextLogReader::Next() {
     UseTime(*said->time_of_day, said->date);
     num_local_ = 0;
   } else if (sentence && sentence->time_of_day && ++num_local_ == kMostLocal) {
-    // What said more of time has ended.
+    // The source that said more of time has ended.
     time_zone_ = {};
     has_other_zone_ = false;
   }

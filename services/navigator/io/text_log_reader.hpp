@@ -20,15 +20,15 @@ namespace lookout::navigator {
 /// Whether a file is a text log: in its first MB, behind zero bytes at its start, stands a sentence whose checksum is right; or it is text, but for
 /// one byte in ten at most, with something that begins as a sentence does; or it begins with the head of a CSV recording.
 ///
-/// What stands between the sentences does not matter: a byte order mark, notes in any coding, tag blocks, binary messages of the receiver.
-/// What gzip packed is a text log if it is one when it is unpacked, but never where it begins as a capture or an lcm-log.
+/// Bytes between the sentences do not matter: a byte order mark, notes in any coding, tag blocks, binary messages of the receiver. A gzip file is a
+/// text log if its content is one, but never where that begins as a capture or an lcm-log.
 /// @throws std::runtime_error when it cannot be read
 bool IsTextLog(const std::filesystem::path& file);
 
 class TextLogReader {
  public:
-  /// A sentence that is older than the one before it by no more than this came late, as several talkers on one line have it: it takes the time
-  /// of the one before. What runs back further begins anew.
+  /// A sentence that is older than the one before it by no more than this came late, as several talkers on one line have it: it takes the time of the
+  /// one before. A sentence that runs back further begins anew.
   static constexpr std::chrono::seconds kMaxLate{10};
 
   /// A date that is a step from those before it counts where the dates behind it agree: of so many at least half. The one that is wrong is left out.

@@ -1,4 +1,4 @@
-// Who may ask the server for what, and what a browser is told to allow the page: pure functions of a request's headers.
+// Access control: which request the server answers, and what a browser is told to allow the page. Pure functions of a request's headers.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct OwnHosts {
   int port = 0;
 };
 
-/// A name that a foreign page has let point at this computer is none of ours, so what a page there asks for is refused.
+/// A name that a foreign page has let point at this computer is none of ours, so the requests of such a page are refused.
 /// @param host  the header `Host`: a name of ours in any case, with our port (which may be missing where it is 80), and nothing else
 bool IsOwnHost(std::string_view host, const OwnHosts& own);
 

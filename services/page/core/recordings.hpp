@@ -1,5 +1,5 @@
-// What the server asks of recordings: logs, or the last minutes of a live bus. Its calls may take time (they read a disk) and are made on a thread of
-// their own, one at a time.
+// The server's interface to recordings: logs, or the last minutes of a live bus. Its calls may take time (they read a disk) and are made on a thread
+// of their own, one at a time.
 #pragma once
 
 #include <cstdint>

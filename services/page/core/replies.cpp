@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-// What is no UTF-8 (the name of a computer, of a file) becomes a replacement character.
+// A text that is no UTF-8 (the name of a computer, of a file) gets replacement characters.
 std::string Text(const json& message) { return message.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 // An object with a member more, whose value is JSON already.

@@ -105,7 +105,7 @@ class Reader {
 
   bool Has(const char* name) const { return members_.contains(name); }
 
-  // Of what was not taken nobody knows what it means.
+  // Nobody knows the meaning of a member that was not read.
   void End() {
     if (!members_.empty()) Fail("it has a member that is not known");
   }

@@ -1,4 +1,4 @@
-// What a browser may ask for over its WebSocket (PROTOCOL.md).
+// Requests of a browser over its WebSocket (PROTOCOL.md).
 #pragma once
 
 #include <cstdint>
@@ -55,7 +55,7 @@ inline constexpr std::size_t kMaxChannels = 64;
 /// Names of the channels that a page may show, in the order of their indices: those of the channel table.
 const std::vector<std::string_view>& ChannelNames();
 
-/// What is wrong with a text that is no request.
+/// The fault of a text that is no request.
 struct RequestFault {
   std::uint32_t id = 0;  // 0: it had none
   std::string reason;
@@ -75,7 +75,7 @@ struct Acknowledgement {
 /// @return nullopt when the text is none; never throws
 std::optional<Acknowledgement> ParseAcknowledgement(std::string_view text);
 
-/// What a browser with a valid token tells the look-out to do: no sound for a while, mode and limits, or the name of a track (order_t).
+/// An order of a browser with a valid token to the look-out: silence for a while, mode and limits, or the name of a track (order_t).
 struct Order {
   enum class Kind : std::uint8_t { kSilence, kSettings, kName };
   enum class Mode : std::uint8_t { kOpenWater, kHarbour };

@@ -1,4 +1,4 @@
-// What waits to be sent to one client: of each slot the newest only.
+// Frames that wait to be sent to one client: of each slot the newest only.
 #pragma once
 
 #include <cstddef>
@@ -23,14 +23,14 @@ class Slots {
 
   /// @param slot   within the channel: messages of one slot replace each other
   /// @param group  messages of one group stand beside each other
-  /// @param part   within the group: one that comes again replaces what waits of it
+  /// @param part   within the group: a part that comes again replaces the waiting one
   /// @param frame  not null
   void Put(ChannelIndex channel, std::string_view slot, std::int64_t group, int part, SharedBytes frame);
 
-  /// @return what is to be sent next; nullptr when nothing waits
+  /// @return the next frame to send; nullptr when nothing waits
   SharedBytes Take();
 
-  /// Forgets what waits of other channels than these.
+  /// Forgets waiting frames of other channels than these.
   void KeepOnly(const std::vector<ChannelIndex>& channels);
 
   bool is_empty() const { return ready_.empty(); }
@@ -46,7 +46,7 @@ class Slots {
   struct Slot {
     bool has_begun = false;
     std::int64_t begun_group = 0;  // the one of which a part was sent last
-    Parts begun;                   // what is left of it
+    Parts begun;                   // its unsent rest
     std::int64_t next_group = 0;
     Parts next;
 

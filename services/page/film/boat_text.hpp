@@ -1,4 +1,4 @@
-// What a page draws of the own boat: `boat` of a source (PROTOCOL.md).
+// The own boat as a page draws it: `boat` of a source (PROTOCOL.md).
 #pragma once
 
 #include <filesystem>

@@ -36,7 +36,7 @@ std::string NameOf(const std::vector<fs::path>& logs) {
   return name;
 }
 
-// What is a file, but no log, is left out later, and told.
+// A file that is no log is left out later, and told.
 std::int64_t SizeOf(const fs::path& log) {
   std::error_code error;
   if (!fs::is_regular_file(log, error)) throw std::runtime_error(io::WhyNot(log, io::Wanted::kLog));

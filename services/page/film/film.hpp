@@ -21,13 +21,13 @@ struct FilmOptions {
   std::function<void(const std::string& line)> tell = {};          // for people
 };
 
-/// Indices are read or made on a thread of its own; until that of a source is whole its requests are refused (PROTOCOL.md).
+/// Indices are read or made on a thread of its own; requests of a source are refused until its index is complete (PROTOCOL.md).
 class Film final : public Recordings {
  public:
   /// @throws std::runtime_error when there is no log, or one cannot be opened
   explicit Film(FilmOptions options);
 
-  /// Ends the making of an index; what was made of it is lost.
+  /// Ends the making of an index; its unfinished part is lost.
   ~Film() override;
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;

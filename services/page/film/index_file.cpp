@@ -64,7 +64,7 @@ class In {
     const auto bytes = Next(size);
     return {bytes.begin(), bytes.end()};
   }
-  // A count of what takes `least_bytes` each: no more than there can be.
+  // A count of entries that take `least_bytes` each: no more than there can be.
   std::size_t TakeCount(std::size_t least_bytes, std::size_t max_count = SIZE_MAX) {
     const auto count = Take<std::uint64_t>();
     if (count > bytes_.size() / least_bytes || count > max_count) throw Fault();

@@ -14,7 +14,7 @@
 
 namespace lookout::page {
 
-/// By what an index knows its log again.
+/// Size, time and digest, by which an index recognises its log.
 struct LogIdentity {
   std::int64_t size_bytes = 0;
   std::int64_t modified_ns = 0;  // since 1970 UTC

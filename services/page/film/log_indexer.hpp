@@ -1,4 +1,4 @@
-// Reads a log once, from its beginning on, and says what is where.
+// Reads a log once, from its beginning on, and makes its index.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace lookout::page {
 /// Whether messages of the channel get an entry: a page shows them. Raw channels and the simulator's truth get none; their losses are counted.
 bool HasEntries(std::string_view channel);
 
-/// Of large messages only the heads are read. Times of events never go back: where the host's clock was set back, what follows is told as so much
+/// Of large messages only the heads are read. Times of events never go back: where the host's clock was set back, later events are told as so much
 /// later, and a "gap" says so. A message that is of another type than its channel's, or is none, gets no entry.
 class LogIndexer {
  public:
@@ -29,7 +29,7 @@ class LogIndexer {
   LogIndexer(const std::filesystem::path& file, bool is_growing);
 
   /// Reads on, about `max_bytes` of the file.
-  /// @param part  what was read is appended to it
+  /// @param part  new entries are appended to it
   /// @return whether the log goes on
   bool Read(std::int64_t max_bytes, LogPart& part);
 
@@ -65,7 +65,7 @@ class LogIndexer {
   std::vector<std::uint8_t> kept_;  // bytes of an event while the next is looked at
   std::string kept_channel_;
   std::optional<Utime> last_;
-  std::chrono::microseconds shift_{0};  // of what follows a clock that was set back
+  std::chrono::microseconds shift_{0};  // of entries behind a clock that was set back
   std::array<bus::SequenceWatch, bus::kChannels.size()> sequences_;
   std::array<std::int64_t, bus::kChannels.size()> num_lost_in_second_{};
   std::array<bool, bus::kChannels.size()> is_refusal_told_{};

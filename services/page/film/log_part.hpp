@@ -1,4 +1,4 @@
-// What an index holds of a log, or of a stretch of it.
+// The index of a log, or of a stretch of it.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct LogEntry {
   bool operator==(const LogEntry&) const = default;
 };
 
-/// What happened in one second.
+/// Events of one second.
 struct SecondCell {
   std::int64_t second = 0;  // since 1970 UTC
   std::int32_t num_tracks = -1;
@@ -52,7 +52,7 @@ struct FilmEvent {
 };
 
 inline constexpr std::size_t kMaxFilmTextBytes = 240;
-inline constexpr std::size_t kMaxFilmEvents = 50'000;  // of one log; what comes later is not told
+inline constexpr std::size_t kMaxFilmEvents = 50'000;  // of one log; later ones are not told
 inline constexpr std::size_t kMaxFilmProcesses = 64;
 
 struct LogPart {

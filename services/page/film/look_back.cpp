@@ -100,7 +100,7 @@ struct LookBack::Implementation {
     if (std::exchange(end_told, end) != end && options.on_sources) options.on_sources();
   }
 
-  // What the disk's reserve leaves to the spool, and why that is too little. Where the room is not known writing tells.
+  // The room that the disk's reserve leaves to the spool, and why it is too little. Where the room is not known, writing will fail.
   std::string TakeRoom() {
     const auto free_bytes = options.free_bytes(options.spool_folder);
     room_bytes = options.max_bytes;
@@ -119,7 +119,7 @@ struct LookBack::Implementation {
     status.shortage.clear();
   }
 
-  // What was spooled goes back to the disk, and out of what is shown: nobody can read it any more.
+  // Spooled files go back to the disk, and out of the picture: nobody can read them any more.
   void GiveUpSpool() {
     if (spool.num_files() == 0) return;
     ClearSpool();
@@ -207,16 +207,16 @@ struct LookBack::Implementation {
       status.shortage.clear();
     }
     const std::scoped_lock lock(mutex);
-    recording = Recording();  // the recorder's log holds what the spool held
+    recording = Recording();  // the recorder's log holds the messages of the spool
   }
 
-  // What was read stays; the spool goes on.
+  // Entries that were read stay; the spool goes on.
   void StopFollowing() {
     followed.reset();
     is_following = false;
   }
 
-  // The first of those to follow. One that cannot be opened (it was removed meanwhile, or is not for us to read) is left out.
+  // The first log to follow. A log that cannot be opened (it was removed meanwhile, or is not readable) is left out.
   bool OpenNext() try {
     followed.emplace(to_follow.front(), true);
     followed_file = to_follow.front();
@@ -247,7 +247,7 @@ struct LookBack::Implementation {
         if (log > to_follow.back()) to_follow.push_back(log);
       }
       if (to_follow.size() == 1) return;
-      ReadOn(*followed, followed_number);  // what was written before the next was begun
+      ReadOn(*followed, followed_number);  // entries written before the next was begun
       to_follow.erase(to_follow.begin());
       followed.reset();
     }
@@ -329,11 +329,11 @@ struct LookBack::Implementation {
   std::atomic<bool> is_stopping = false;
   std::atomic<bool> is_following = false;
 
-  // Of what is recorded. Held while a disk is read, never while one is written or a log is looked through.
+  // Guards the recordings. Held while a disk is read, never while one is written or a log is looked through.
   mutable std::mutex mutex;
   Recording recording;
 
-  mutable std::mutex status_mutex;  // of what stands here; never held while a disk is used
+  mutable std::mutex status_mutex;  // guards these members; never held while a disk is used
   LookBackStatus status;
   std::string turn_fault;
   std::string sources_text = "[]";
@@ -355,7 +355,7 @@ struct LookBack::Implementation {
   int num_periods = 0;
   int retry_periods = 0;
   bool is_stop_told = false;
-  std::int64_t room_bytes = options.max_bytes;  // of the spool: what the disk's reserve leaves to it
+  std::int64_t room_bytes = options.max_bytes;  // of the spool: the room that the disk's reserve leaves to it
   std::string room_text;
   std::optional<Utime> end_told;
 

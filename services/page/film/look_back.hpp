@@ -41,9 +41,9 @@ struct LookBackStatus {
 };
 
 /// Source 0, growing. The spool is a log for each minute, SPOOL/look-back-N.lcmlog.partial: never committed, so never synced, and gone with the
-/// process; what a killed process left is removed at the next start. Once a second the recorder's folder is looked at: when its newest log grows,
-/// that is followed and no spool is written; when it has not grown for 5 s, the spool is written again. It leaves the reserve of the disk free: where
-/// less is left it gives up its oldest minutes, and below kLeastBytes ends.
+/// process; the next start removes the files of a killed process. Once a second the recorder's folder is looked at: when its newest log grows, that
+/// is followed and no spool is written; when it has not grown for 5 s, the spool is written again. It leaves the reserve of the disk free: where less
+/// is left it gives up its oldest minutes, and below kLeastBytes ends.
 class LookBack final : public Recordings {
  public:
   /// Starts its thread.

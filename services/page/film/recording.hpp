@@ -1,4 +1,4 @@
-// One source: the logs of it, and what they hold. Not for several threads at once.
+// One source: its logs and their contents. Not for several threads at once.
 #pragma once
 
 #include <cstdint>
@@ -23,16 +23,16 @@ class Recording {
   /// @return its number. @throws std::runtime_error when it cannot be opened, or there were 65 535
   std::uint16_t AddLog(const std::filesystem::path& log);
 
-  /// What the log holds, or holds further. A log that begins before the one before ends is shown behind it, and an event says by how much.
+  /// Adds entries of a log. A log that begins before the one before ends is shown behind it, and an event says by how much.
   void Append(std::uint16_t log, const LogPart& part);
 
-  /// Forgets what was before, and closes logs of which nothing is left, but for the last.
+  /// Forgets entries before this time, and closes logs without any left, but for the last.
   void DropBefore(Utime time);
 
-  /// Closes logs that were removed: else their bytes stay on the disk, and who removed them wanted room. What they held is left out of answers.
+  /// Closes logs that were removed: else their bytes stay on the disk, and they were removed to make room. Their messages are left out of answers.
   void CloseRemoved();
 
-  /// The time of what the log holds last, as it is shown; nullopt: it was closed, or holds nothing yet.
+  /// The time of the log's last entry, as it is shown; nullopt: the log was closed, or has no entry yet.
   std::optional<Utime> LastOf(std::uint16_t log) const;
 
   const Timeline& timeline() const { return timeline_; }

@@ -26,7 +26,7 @@ struct SpooledMessage {
 /// Files are never committed, so never synced: they go with the process (io::OutputFile).
 class Spool {
  public:
-  /// Makes the folder, and removes what a killed process left in it.
+  /// Makes the folder, and removes the files that a killed process left in it.
   /// @throws std::runtime_error when it cannot be made
   explicit Spool(std::filesystem::path folder);
 

@@ -11,8 +11,7 @@ namespace lookout::page {
 
 inline constexpr std::size_t kMaxStripEvents = 2000;
 
-/// JSON text of a `strip`, or of `refused` (PROTOCOL.md). Buckets shorter than a second show what was in their second; losses stand in the first of
-/// them.
+/// JSON text of a `strip`, or of `refused` (PROTOCOL.md). Buckets shorter than a second show their second; losses stand in its first bucket.
 std::string StripText(const Timeline& timeline, const StripRequest& request);
 
 }  // namespace lookout::page

@@ -10,10 +10,10 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::seconds;
 
-// Messages of one scan come within this time; what has its time later is of another run.
+// Messages of one scan come within this time; a later message with its time is of another run.
 constexpr seconds kScanSpread(5);
 constexpr std::size_t kOpenScans = 16;
-constexpr seconds kRecent(5);           // HEALTH and what else has no scan
+constexpr seconds kRecent(5);           // HEALTH and other channels without a scan
 constexpr std::size_t kMaxBack = 2000;  // messages of ALERTS that are looked through
 
 bool Is(ChannelIndex channel, const bus::Channel& of) { return bus::kChannels[channel].name == of.name; }
@@ -82,7 +82,7 @@ void Timeline::NoteScan(const Place& place) {
 void Timeline::DropBefore(Utime time) {
   if (!begin_ || time <= *begin_) return;
   for (auto& places : channels_) {
-    // Of RUN_INFO the last before is what a moment needs.
+    // A moment needs the last RUN_INFO before it.
     const bool keeps_last = &places == &channels_[static_cast<std::size_t>(bus::FindChannel("RUN_INFO") - bus::kChannels.data())];
     while (!places.empty() && places.front().time < time && !(keeps_last && places.size() == 1)) places.pop_front();
   }
@@ -158,7 +158,7 @@ std::vector<Place> Timeline::OfChannel(ChannelIndex channel, const Moment& momen
     return found;
   }
   if (Is(channel, bus::kAlerts)) {
-    // One a scan, after its TRACKS, and what the watch said later, which names the last scan, too: of what there was by then the last counts.
+    // One a scan, after its TRACKS, and later ones of the watch, which name the last scan, too: the last that was there by then counts.
     const auto is_of_scan = [&](const Place& place) { return place.utime_us == scan->utime_us; };
     if (scan == nullptr) return {};
     auto place = after;

@@ -1,4 +1,4 @@
-// What one or more logs hold, in the order of time: which messages make a moment or a span.
+// The entries of one or more logs, in the order of time: which messages make a moment or a span.
 #pragma once
 
 #include <array>
@@ -45,11 +45,11 @@ struct PlacesOfChannel {
 
 class Timeline {
  public:
-  /// What comes next. A time before the end is brought to the end: few, and by little.
+  /// Appends the next entries. A time before the end is brought to the end: few, and by little.
   /// @param shift  added to its times; whole seconds
   void Append(const LogPart& part, std::uint16_t file, std::chrono::microseconds shift);
 
-  /// Forgets what was before.
+  /// Forgets earlier entries.
   void DropBefore(Utime time);
 
   bool is_empty() const { return !begin_; }

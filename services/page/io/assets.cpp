@@ -10,7 +10,7 @@ namespace lookout::page {
 
 namespace {
 
-// Of checksum and size: what a browser holds is asked for by it, and each version of the program must have another.
+// Of checksum and size: a browser asks by it whether its copy is current, so each version of the program must have another.
 std::string TagOf(Bytes bytes) {
   const auto sum = crc32_z(0, bytes.data(), bytes.size());
   std::array<char, 40> text{};

@@ -79,7 +79,7 @@ void Client::Read() {
     const auto bytes = self->buffer_.cdata();
     self->OnText({static_cast<const char*>(bytes.data()), bytes.size()});
     self->buffer_.clear();
-    // Who does not read what it is told is not listened to.
+    // A client that does not read its answers is not listened to.
     if (self->texts_.size() < kMaxTexts) self->Read();
   });
 }
@@ -216,7 +216,7 @@ void Client::Refuse(std::uint32_t id, std::string_view reason) { Tell(RefusedTex
 
 bool Client::HasRoom() const { return unconfirmed_.size() < kMaxUnconfirmedFrames && num_unconfirmed_bytes_ < kMaxUnconfirmedBytes; }
 
-// Live and asked for take turns, so that neither waits for the whole of the other.
+// Live frames and answers take turns, so that neither waits for all of the others.
 SharedBytes Client::NextFrame() {
   const bool is_live = !slots_.is_empty() && (found_.frames.empty() || is_turn_of_live_);
   is_turn_of_live_ = !is_live;

@@ -1,4 +1,4 @@
-// A browser's WebSocket: live messages of the channels that it watches, and answers to what it asks of recordings.
+// A browser's WebSocket: live messages of the channels that it watches, and answers out of recordings.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -42,7 +42,7 @@ class Client : public std::enable_shared_from_this<Client> {
 
  private:
   using Question = std::variant<At, Range, StripRequest>;
-  // What was found for a question.
+  // The answer to a question.
   struct Found {
     std::deque<SharedBytes> frames;
     std::size_t num_bytes = 0;

@@ -69,7 +69,7 @@ void Connection::Start() { AwaitRequest(kFirstPatience); }
 
 void Connection::LetGo() {
   is_let_go_ = true;
-  stream_.close();  // what waits for it hears of it
+  stream_.close();  // handlers that wait for it hear of it
 }
 
 void Connection::Enter(Stage stage) {
@@ -164,7 +164,7 @@ void Connection::ServeFromDisk(std::string_view path) {
   const bool is_list = path == "/tiles.json";
   const bool is_tile = ParseTilePath(path, address) && hub_.parts.tile;
   if (!is_list && !is_tile) return Refuse(http::status::not_found, "there is no such map", "refused_request");
-  // What a chart lacks is no fault: a 404 would stand as one in the browser's console, for each tile.
+  // A missing tile is no fault: a 404 would stand as one in the browser's console, for each tile.
   if (is_list && !hub_.parts.tiles_text) return Send(http::status::no_content, {}, kAskAgain);
   stream_.expires_never();
   asio::post(hub_.disk, [self = shared_from_this(), address, is_list]() mutable {
@@ -280,7 +280,7 @@ void Connection::Write() {
   http::async_write(stream_, *serializer_, std::move(on_sent));
 }
 
-// A socket that is closed while something to read is left takes back what was sent: the browser would not see the refusal.
+// A socket that is closed while something to read is left takes back the sent bytes: the browser would not see the refusal.
 void Connection::Linger() {
   error_code ignored;
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);

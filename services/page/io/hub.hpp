@@ -1,4 +1,4 @@
-// What connections and clients of one server share. All but Counts and the watched channels is of the server's thread.
+// State that connections and clients of one server share. All but Counts and the watched channels is of the server's thread.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ struct Hub {
   std::string sources = "[]";              // JSON
   std::size_t num_answer_bytes = 0;        // found and not yet sent, of all clients
   bool is_ending = false;
-  // Last, so that what waits in them goes first.
+  // Last, so that work that waits in them goes first.
   boost::asio::io_context context{1};
   boost::asio::thread_pool disk{1};
 };

@@ -90,7 +90,7 @@ struct Server::Implementation {
     return fault;
   }
 
-  // Whoever has the port may end, and an address may come later.
+  // The program that has the port may end, and an address may come later.
   void ListenLater() {
     accept_pause.expires_after(io::kListenPause);
     accept_pause.async_wait([this](error_code) {
@@ -141,8 +141,8 @@ struct Server::Implementation {
     std::make_shared<Connection>(hub, std::move(socket))->Start();
   }
 
-  // Who connects and asks for nothing keeps nobody out: for a new connection an old one is closed, first such as has asked for nothing yet, of the
-  // address that holds most of them. What looks at the page (a WebSocket) stays. @return whether there is room
+  // A connection that asks for nothing keeps nobody out: for a new connection an old one is closed, first one that has asked for nothing yet, of the
+  // address that holds most of them. A page that looks on (a WebSocket) stays. @return whether there is room
   bool MakeRoom() {
     std::map<std::string_view, std::int64_t> number;
     for (const auto* one : hub.connections) ++number[one->remote()];
@@ -170,7 +170,7 @@ struct Server::Implementation {
     return true;
   }
 
-  // What a client does may take it off the list.
+  // A client's action may take it off the list.
   template <class Function>
   void ForEachClient(Function&& function) {
     const std::vector<std::shared_ptr<Client>> clients(hub.clients.begin(), hub.clients.end());
@@ -224,7 +224,7 @@ struct Server::Implementation {
   asio::steady_timer tick{hub.context};
   SteadyTime end_since{};
   std::atomic<int> port = 0;
-  mutable std::mutex faults_mutex;  // of what stands here
+  mutable std::mutex faults_mutex;  // guards these members
   std::string listen_fault;
   std::string crowd_text;
   std::optional<SteadyTime> crowded_at;

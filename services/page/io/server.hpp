@@ -44,7 +44,8 @@ struct Tile {
   std::vector<std::uint8_t> bytes;
 };
 
-/// What the server asks of the rest. Called on its threads: acknowledge and order on the server's, the others on the one that reads disks.
+/// Calls of the server to the rest of the process. Made on its threads: acknowledge and order on the server's, the others on the one that reads
+/// disks.
 struct ServerParts {
   std::vector<Asset> assets = {};
   std::shared_ptr<Recordings> recordings = {};                        // may be none
@@ -76,13 +77,13 @@ class Server {
   /// 0 while it waits for it.
   int port() const;
 
-  /// What keeps browsers away, or did within the last minute, a sentence each.
+  /// Faults that keep browsers away, or did within the last minute, a sentence each.
   std::vector<std::string> Faults() const;
 
   /// Whether any client watches the channel: else nobody needs its messages.
   bool IsWatched(ChannelIndex channel) const;
 
-  /// Sends a live message to those who watch its channel. Any thread; returns at once.
+  /// Sends a live message to the clients that watch its channel. Any thread; returns at once.
   /// @param slot   messages of one slot replace each other: of HEALTH the process, else empty
   /// @param group  messages of one group stand beside each other: utime_us
   /// @param part   within the group

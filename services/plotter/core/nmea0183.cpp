@@ -28,7 +28,7 @@ constexpr std::int64_t kMostInstance = 999'999;
 double MetresIn(Unit unit) { return unit == Unit::kKilometres ? 1000.0 : kMetresPerNauticalMile; }
 char LetterOf(Unit unit) { return unit == Unit::kKilometres ? 'K' : 'N'; }
 
-// Empty where it is not known. What rounds to zero has no sign.
+// Empty where it is not known. A number that rounds to zero has no sign.
 std::string Number(double value, int decimals) {
   if (!std::isfinite(value)) return {};
   auto text = fmt::format("{:.{}f}", value, decimals);
@@ -95,8 +95,8 @@ std::string NameWithin(const std::string& name, std::size_t max_bytes) {
   return FieldText(last_word == std::string::npos ? name : name.substr(last_word + 1), max_bytes);
 }
 
-// What an alert says within a sentence: the whole where it fits; else in short words, first those that cost least; else to the end of a word, since
-// what stands first (who, where, how far) matters most.
+// The text of an alert within a sentence: all of it where it fits; else in short words, first those that cost least; else up to the end of a word,
+// since who, where and how far stand first.
 std::string AlertWithin(std::string text, std::size_t max_bytes) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kShort{{{" in the guard zone", " in zone"},
                                                                                  {"closest approach", "CPA"},
@@ -116,7 +116,8 @@ std::string AlertWithin(std::string text, std::size_t max_bytes) {
   return FieldText(text, max_bytes);
 }
 
-// Which cause weighs most may change while one thing stays dangerous: who was told of it by one identifier must be told of its end by the same.
+// The cause that weighs most may change while one thing stays dangerous: a receiver that was told of it by one identifier must be told of its end by
+// the same.
 int IdentifierOf(Cause cause) { return kFirstIdentifier + static_cast<int>(cause == Cause::kGuardZone ? Cause::kClosestApproach : cause); }
 
 // 1 to 999999; the watch's ids run from -1 down, and of the plotter's own there is one of a cause.

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxSentenceBytes = 82;
 /// @param body  "RATTM,05,..." without characters that a sentence cannot hold: FieldText
 std::string Sentence(std::string_view body);
 
-/// A text as a field: what is reserved in a sentence ($ * , ! \ ^ ~), a control character or no ASCII becomes a space.
+/// A text as a field: a character reserved in a sentence ($ * , ! \ ^ ~), a control character or one that is no ASCII becomes a space.
 std::string FieldText(std::string_view text, std::size_t max_bytes);
 
 /// Position, speed and course. Without a position it is void (V), with empty fields; where that is estimated it is void, too, with mode E.

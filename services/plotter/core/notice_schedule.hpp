@@ -13,7 +13,7 @@
 
 namespace lookout::plotter {
 
-/// What names a notice as long as it lives: the id of the alert; one of its own for each that is the plotter's own.
+/// Key of a notice as long as it lives: the id of the alert; one of its own for each that is the plotter's own.
 std::int64_t KeyOf(const Notice& notice);
 
 /// One raising of it: a tracker that began anew gives the same ids to other alerts.
@@ -22,9 +22,9 @@ RaisedKey RaisedKeyOf(const Notice& notice);
 /// The same as a text.
 std::string SubjectOf(const Notice& notice);
 
-/// A notice is due when it is new, when its level, its state or its sound has changed, and every kPeriod while it is not cleared. One that is there
-/// no more is told as cleared; what is old (is_old) is left as it was told. That one is cleared is told twice more, and to each new receiver for
-/// kEndedFor: else one lost message leaves an alarm standing. Time is host time passed.
+/// A notice is due when it is new, when its level, its state or its sound has changed, and every kPeriod while it is not cleared. A notice that is
+/// gone is told as cleared; an old one (is_old) is left as it was told. A clearing is told twice more, and to each new receiver for kEndedFor: else
+/// one lost message leaves an alarm standing. Time is host time passed.
 class NoticeSchedule {
  public:
   static constexpr std::chrono::seconds kPeriod{10};
@@ -34,7 +34,7 @@ class NoticeSchedule {
   struct Due {
     Notice notice;
     int revision = 1;        // 1 to 99: goes up with each change
-    bool is_repeat = false;  // of what was told before: it can wait
+    bool is_repeat = false;  // of a notice that was told before: it can wait
   };
 
   /// @param notices  all that are there now; where the output has no words for sound, without it

@@ -21,7 +21,7 @@ LocalFrame FrameAt(const Position& position) { return LocalFrame({position.latit
 bool IsDangerous(const Target& target) { return target.level != Level::kNone || ComesNear(target); }
 
 bool IsMoreDangerous(const Target& one, const Target& other) {
-  // What is not known comes last.
+  // Unknown values come last.
   const auto known = [](double value) { return std::isnan(value) ? 1e9 : value; };
   const auto key = [&known](const Target& target) {
     return std::tuple(-static_cast<int>(target.level), ComesNear(target) ? 0 : 1, ComesNear(target) ? known(target.tcpa_s) : 0.0,

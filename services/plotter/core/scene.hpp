@@ -1,4 +1,4 @@
-// What the plotter tells of: the own ship, targets, alerts.
+// The scene of the plotter: the own ship, targets, alerts.
 #pragma once
 
 #include <cstdint>
@@ -75,8 +75,8 @@ struct Notice {
   bool operator==(const Notice&) const = default;
 };
 
-/// Whether one is to be shown before another: what has an alert, the graver first; then what comes too near, the sooner first; then the nearer; then
-/// the lower id.
+/// Whether one target is shown before another: those with an alert, the graver first; then those that come too near, the sooner first; then the
+/// nearer; then the lower id.
 bool IsMoreDangerous(const Target& one, const Target& other);
 
 /// Whether it has an alert, or is likely to pass below the limit.

@@ -32,7 +32,7 @@ std::string TimeText(Utime time) {
                      clock.subseconds().count());
 }
 
-// null where it is not known. To a digit that is below what the sensors tell, so that texts stay short.
+// null where it is not known. Rounded to a digit below the sensors' resolution, so that texts stay short.
 Json Number(double value, double per_unit) {
   if (!std::isfinite(value)) return nullptr;
   return std::nearbyint(value * per_unit) / per_unit;

@@ -11,10 +11,10 @@
 
 namespace lookout::plotter {
 
-/// Part of a target's context: letters, digits, - and _; what else the name of a boat has becomes _.
+/// Part of a target's context: letters, digits, - and _; other characters of the boat's name become _.
 std::string BoatWord(std::string_view boat);
 
-/// navigation.* of vessels.self. What is not known is null, so that nothing old stays.
+/// navigation.* of vessels.self. Unknown values are null, so that nothing old stays.
 std::string OwnShipDelta(const OwnShip& own);
 
 /// targets.lidar:<boat>-<id>: position, course, speed, size, closest approach (hull to hull).
@@ -23,23 +23,23 @@ std::string TargetDelta(std::string_view boat, const Target& target, Utime time)
 /// Its end: position, course, speed and closest approach are null.
 std::string TargetEndDelta(std::string_view boat, std::int64_t target_id, Utime time);
 
-/// notifications.lookout.<word>: warn for a caution, alarm for a warning; with sound where it is the one that sounds; alert for what is over and was
-/// not acknowledged; normal when it is over.
+/// notifications.lookout.<word>: warn for a caution, alarm for a warning; with sound where it is the one that sounds; alert for one that is over and
+/// was not acknowledged; normal when it is over.
 std::string NoticeDelta(const Notice& notice, std::string_view word, Utime time);
 
-/// Names one raising of an alert. A server remembers by path that one was acknowledged: whoever is told of a new one under an old path hears nothing.
+/// Names one raising of an alert. A server remembers acknowledgements by path: a user hears nothing of a new alert under an old path.
 std::string NoticeWord(const Notice& notice);
 
-/// What asks a server to send notifications back.
+/// The subscription by which a server sends notifications back.
 std::string NoticeSubscription();
 
-/// What a server says of a notification now.
+/// The present state of a notification at a server.
 struct NoticeEcho {
   std::string word;
   bool is_raised = false;        // it is not normal
   bool is_acknowledged = false;  // by its notifications API
-  /// It is an alarm or a warning without sound, or was set to normal, and not by that API: as older displays acknowledge. What was sent without sound
-  /// comes back so, too.
+  /// It is an alarm or a warning without sound, or was set to normal, and not by that API: as older displays acknowledge. A notification that was
+  /// sent without sound comes back so, too.
   bool is_quiet = false;
 };
 

@@ -13,8 +13,8 @@
 
 namespace lookout::plotter {
 
-/// A target keeps its number as long as it lives. The number of one that was lost is given to no other for a while, so that a plotter does not draw
-/// the way of one into that of another. The last kReserved numbers are for dangerous targets, so that a crowded berth does not use up all.
+/// A target keeps its number as long as it lives. The number of a lost target is given to no other for a while, so that a plotter does not draw the
+/// way of one into that of another. The last kReserved numbers are for dangerous targets, so that a crowded berth does not use up all.
 ///
 /// Time is host time passed, as of PassedTime.
 class TargetNumbers {
@@ -36,7 +36,7 @@ class TargetNumbers {
 
   /// Targets that got none in the last Assign.
   int num_without() const { return static_cast<int>(without_.size()); }
-  /// Times that a target became one of those.
+  /// Times that a target began to be without a number.
   std::int64_t num_overflows() const { return num_overflows_; }
   int num_used() const { return static_cast<int>(number_of_.size()); }
 

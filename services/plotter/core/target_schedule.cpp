@@ -16,7 +16,7 @@ std::vector<const Target*> TargetSchedule::Due(std::span<const Target> targets, 
     const auto last = found == sent_.end() ? std::nullopt : found->second.time;
     if (last && now - *last < period_) continue;
     const bool is_dangerous = IsDangerous(target);
-    // What is new counts as if it had waited for four periods before.
+    // A new target counts as if it had waited for four periods before.
     const auto waited = last ? now - *last : now - new_.try_emplace(target.id, now).first->second + kDangerousWeight * period_;
     due.emplace_back(!is_dangerous ? waited : last ? kDangerousWeight * waited : kNewAndDangerous, &target);
   }

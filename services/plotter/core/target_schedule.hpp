@@ -16,7 +16,7 @@ namespace lookout::plotter {
 /// Time is host time passed, as of PassedTime.
 class TargetSchedule {
  public:
-  /// What was sent of a target last.
+  /// The last report of a target.
   struct Sent {
     Target target;
     Utime target_time = {};                         // to which it was propagated
@@ -32,12 +32,12 @@ class TargetSchedule {
 
   void NoteSent(const Target& target, Utime target_time, int number, std::chrono::microseconds now);
 
-  /// Those that were sent and are there no more, by id: each is told once.
+  /// Sent targets that are there no more, by id: each is told once.
   std::vector<Sent> TakeEnded(std::span<const Target> targets);
 
-  /// A new receiver knows of none: all are due. What has ended is still told.
+  /// A new receiver knows of none: all are due. Ended targets are still told.
   void SendAnew();
-  /// The same, and what has ended is not told: the number of one that ended while nobody listened may be that of another by now.
+  /// The same, and ended targets are not told: the number of one that ended while nobody listened may be that of another by now.
   void Forget() { sent_.clear(); }
 
  private:

@@ -30,18 +30,18 @@ class Connection {
   /// Why it was closed.
   const std::string& reason() const { return reason_; }
 
-  /// @param message  whole. What waits behind a full buffer closes the connection.
+  /// @param message  whole. A message that waits behind a full buffer closes the connection.
   void Send(std::string_view message);
 
   void Tick(SteadyTime now);
 
-  /// What Send may be given now.
+  /// Bytes that Send accepts now.
   std::size_t room_bytes() const {
     const auto num_queued = num_queued_bytes();
     return is_open() && num_queued < kOfferedBytes ? kOfferedBytes - num_queued : 0;
   }
 
-  /// What waits is dropped, in the kernel too. Nothing of this connection happens any more.
+  /// Waiting bytes are dropped, in the kernel too. Nothing of this connection happens any more.
   void Close(const std::string& reason);
 
  protected:
@@ -54,9 +54,9 @@ class Connection {
   virtual std::size_t num_waiting_bytes() = 0;
   /// Whether the other side would learn now that it is closed.
   virtual bool IsReachable() { return true; }
-  /// Drops what waits and closes at once.
+  /// Drops waiting bytes and closes at once.
   virtual void CloseNow() = 0;
-  /// What is to be looked at from time to time.
+  /// Checks that are due from time to time.
   virtual void Check() {}
 
   Traffic& traffic() { return *traffic_; }

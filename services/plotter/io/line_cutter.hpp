@@ -1,4 +1,4 @@
-// Lines of a stream, from whoever sends them.
+// Cuts a received stream into lines.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ class LineCutter {
  public:
   static constexpr std::size_t kMaxLineBytes = 1024;
 
-  /// Adds the lines that end in `bytes` to what was received: without CR and LF, either of which ends one; empty ones are none. One that is longer
-  /// than kMaxLineBytes is refused.
+  /// Adds the lines that end in `bytes` to the received ones: without CR and LF, either of which ends one; empty ones are none. A line longer than
+  /// kMaxLineBytes is refused.
   void Cut(std::string_view bytes, Traffic& traffic) {
     for (const char byte : bytes) {
       if (byte == '\r' || byte == '\n') {

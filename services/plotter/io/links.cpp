@@ -7,7 +7,7 @@ namespace lookout::plotter {
 
 namespace {
 
-// What comes in faster than it can be used must not keep the process here.
+// Input that comes faster than it can be used must not keep the process here.
 constexpr int kMaxHandlersAtOnce = 256;
 
 }  // namespace

@@ -48,9 +48,9 @@ struct WebSocketOptions {
 
 /// Opens links and does their work.
 ///
-/// What fails at the other side (a server that is down, a device that is unplugged, a network without a route) is a fault() of its link, which tries
-/// again until it is mended. A receiver that has not got a message after 2 s is cut off, as it would get old targets as new ones; what waited for it
-/// is dropped. A stream carries whole messages only, but for its last one.
+/// A failure at the other side (a server that is down, an unplugged device, a network without a route) is a fault() of its link, which tries again
+/// until it is mended. A receiver that has not got a message after 2 s is cut off, as it would get old targets as new ones; its waiting messages are
+/// dropped. A stream carries whole messages only, but for its last one.
 ///
 /// Counters of each link, behind `name`: _sent (messages that a receiver's computer has confirmed; over UDP: handed to the network), _dropped (the
 /// receiver was too slow, or was lost), _unsent (nobody was there, or the network refused it), _openings; over UDP: _unheard (the receiver's computer
@@ -71,10 +71,10 @@ class Links {
   /// @throws std::runtime_error when the address is not numeric
   std::unique_ptr<Link> TcpClient(const TcpClientOptions& options);
   std::unique_ptr<Link> Serial(const SerialOptions& options);
-  /// @throws std::runtime_error when the address is not numeric, or path or token hold what cannot stand in a request (blanks, line ends)
+  /// @throws std::runtime_error when the address is not numeric, or path or token hold a character that cannot stand in a request (blanks, line ends)
   std::unique_ptr<Link> WebSocket(const WebSocketOptions& options);
 
-  /// Sends what waits, receives what has come, opens what is closed. To be called every 5 to 10 ms, and after a number of Send calls. Never waits.
+  /// Sends waiting messages, receives, opens closed links. Must be called every 5 to 10 ms, and after a number of Send calls. Never waits.
   void Poll();
 
  private:

@@ -1,4 +1,4 @@
-// What all links have: the loop that drives them, what came in, and what they count.
+// The common parts of all links: the loop that drives them, received messages, counters.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -29,7 +29,7 @@ inline constexpr std::size_t kMaxReceived = 64;
 /// Of that, what room_bytes() offers.
 inline constexpr std::size_t kOfferedBytes = kMaxWaitingBytes - std::size_t{64} * 1024;
 
-/// What went through a link, and what came in. Its connections share it, and may outlive the link.
+/// Counters and received messages of a link. Its connections share them, and may outlive the link.
 struct Traffic {
   std::int64_t num_sent = 0;
   std::int64_t num_dropped = 0;
@@ -51,7 +51,7 @@ struct Traffic {
 
 class Port;
 
-/// What drives the ports. They share it, so that nothing of Asio outlives its context.
+/// The loop that drives the ports. They share it, so that nothing of Asio outlives its context.
 class Loop {
  public:
   boost::asio::io_context& context() { return context_; }
@@ -70,7 +70,7 @@ class Port : public Link {
   explicit Port(std::shared_ptr<Loop> loop) : loop_(std::move(loop)) { loop_->Add(this); }
   ~Port() override { loop_->Remove(this); }
 
-  /// Does what is due.
+  /// Does due work.
   virtual void Tick(SteadyTime now) = 0;
 
   std::optional<std::string> Receive() override {

@@ -24,7 +24,7 @@ class SerialConnection final : public StreamConnection<stream_descriptor> {
 
  private:
   void OnEnd() override { Close("was unplugged"); }
-  // Closing waits for what the port has not sent, for seconds.
+  // Closing waits for unsent bytes of the port, for seconds.
   void PrepareClose() override { tcflush(stream().native_handle(), TCOFLUSH); }
 };
 
@@ -36,7 +36,7 @@ class SerialPort final : public ReopeningPort {
         baud_(options.baud),
         max_room_bytes_(std::max(kMaxLineBytes, static_cast<double>(options.baud) / kBitsPerByte / 2)) {}
 
-  // What the line cannot carry would only make all that follows late.
+  // Bytes beyond the speed of the line would only make all later ones late.
   void Send(std::string_view message) override {
     if (is_open() && message.size() > room_bytes()) {
       ++traffic_->num_dropped;
@@ -55,7 +55,7 @@ class SerialPort final : public ReopeningPort {
 
   std::size_t room_bytes() const override {
     if (!is_open()) return 0;
-    // By its speed, and, where the port itself is slower, by what it has not sent.
+    // By its speed, and, where the port itself is slower, by its unsent bytes.
     const double room = std::min(room_bytes_, max_room_bytes_ - static_cast<double>(serial_->num_waiting()));
     return static_cast<std::size_t>(std::max(room, 0.0));
   }

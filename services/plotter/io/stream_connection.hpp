@@ -35,7 +35,7 @@ class StreamConnection : public Connection, public std::enable_shared_from_this<
   Stream& stream() { return stream_; }
 
   std::size_t num_waiting_bytes() override {
-    int num_in_kernel = 0;  // TIOCOUTQ is SIOCOUTQ: of TCP, what is not acknowledged
+    int num_in_kernel = 0;  // TIOCOUTQ is SIOCOUTQ: of TCP, unacknowledged bytes
     if (ioctl(stream_.native_handle(), TIOCOUTQ, &num_in_kernel) < 0) num_in_kernel = 0;
     return num_queued_bytes() + static_cast<std::size_t>(num_in_kernel);
   }
@@ -58,7 +58,7 @@ class StreamConnection : public Connection, public std::enable_shared_from_this<
 
   // A handler may come after the connection was closed, so it owns the connection, and with it the bytes that the kernel reads from.
   void SendOn() {
-    if (is_late()) return;  // it is to be closed, and what it has not taken is old
+    if (is_late()) return;  // it is to be closed, and its unsent messages are old
     if (num_gone_ == sending_.size()) {
       sending_.clear();
       num_gone_ = 0;

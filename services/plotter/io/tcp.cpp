@@ -20,11 +20,11 @@ using boost::asio::ip::tcp;
 constexpr int kSecondsToFirstProbe = 10;
 constexpr int kSecondsBetweenProbes = 5;
 constexpr int kNumProbes = 3;
-// What was sent and is not acknowledged after this ends the connection, whatever else is tried.
+// Bytes that are not acknowledged after this end the connection.
 constexpr int kUserTimeoutMs = 20'000;
 // Linux doubles it for its own needs. Some hundred lines, or one large delta.
 constexpr int kSendBufferBytes = 16 * 1024;
-// Of somebody who was heard of within this, a reset arrives.
+// A reset arrives at a receiver that was heard of within this time.
 constexpr unsigned kHeardMs = 1000;
 
 std::optional<tcp_info> InfoOf(tcp::socket& socket) {
@@ -71,7 +71,7 @@ void TcpConnection::Connect(const tcp::endpoint& endpoint) {
 
 void TcpConnection::PrepareClose() {
   if (!is_late()) return;
-  // By a reset: what waits in the kernel is dropped.
+  // By a reset: bytes that wait in the kernel are dropped.
   boost::system::error_code ignored;
   stream().set_option(boost::asio::socket_base::linger(true, 0), ignored);
 }

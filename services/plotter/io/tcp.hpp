@@ -14,7 +14,7 @@ boost::asio::ip::address ParseAddress(const std::string& name, const std::string
 /// "192.168.1.5 port 10110"
 std::string PlaceOf(const std::string& address, int port);
 
-/// Little waits in the kernel; who vanished is noticed, also when nothing is sent.
+/// Little waits in the kernel; a vanished receiver is noticed, also when nothing is sent.
 void PrepareSocket(boost::asio::ip::tcp::socket& socket);
 
 /// A client's: it may send no more and still read, and it learns when it is cut off.

@@ -44,7 +44,7 @@ class TcpServerPort final : public Port {
   bool is_open() const override {
     return std::ranges::any_of(clients_, [](const auto& client) { return client->is_open(); });
   }
-  // A client that does not read must not hold up the others: what it has no room for cuts it off.
+  // A client that does not read must not hold up the others: a message without room cuts it off.
   std::size_t room_bytes() const override {
     std::size_t room = 0;
     for (const auto& client : clients_) room = std::max(room, client->room_bytes());
@@ -57,7 +57,7 @@ class TcpServerPort final : public Port {
   }
 
  private:
-  // Somebody who connects again and again must not keep the process here.
+  // A client that connects again and again must not keep the process here.
   static constexpr int kMaxAcceptedAtOnce = 16;
 
   // A port that is taken, or an address that comes later, costs this output alone, and is tried again.

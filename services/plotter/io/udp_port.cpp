@@ -42,7 +42,7 @@ class UdpPort final : public Port {
     boost::system::error_code error;
     socket_.send_to(boost::asio::buffer(message), destination_, 0, error);
     if (error) {
-      // It may be what came of a message before: then this one was not tried yet.
+      // The error may be that of an earlier message: then this one was not tried yet.
       NoteError(error, now);
       ForgetErrors();
       socket_.send_to(boost::asio::buffer(message), destination_, 0, error);
@@ -80,7 +80,7 @@ class UdpPort final : public Port {
  private:
   static constexpr std::string_view kTo = "UDP to ";
   static constexpr std::chrono::seconds kPause{1};
-  // A network tells of what it does not deliver after one message and stays silent after the next.
+  // A network tells of one undelivered message and stays silent after the next.
   static constexpr std::chrono::seconds kFaultHold{5};
   // A receiver's buffer holds 212 kB as Debian has it, which count some 1.3 kB for a datagram of half a kB: of a greater burst the end is lost, and
   // with the same order each time always the same.

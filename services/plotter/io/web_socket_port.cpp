@@ -24,7 +24,7 @@ using boost::asio::ip::tcp;
 
 // A client's frame: 2 bytes, up to 8 for the length, 4 for the mask.
 constexpr std::size_t kMaxFrameHeadBytes = 14;
-// A server from which nothing came for half of it is sent a ping.
+// A server that was silent for half of it is sent a ping.
 constexpr std::chrono::seconds kMaxSilence{10};
 
 class WebSocketConnection final : public Connection, public std::enable_shared_from_this<WebSocketConnection> {

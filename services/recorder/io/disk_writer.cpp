@@ -21,7 +21,7 @@ namespace {
 using io::ErrnoText;
 using io::IsNameOf;
 
-// What waits goes to the kernel so often: with the time of a sync below the second that is promised.
+// Waiting blocks go to the kernel so often: with the time of a sync below the promised second.
 constexpr std::chrono::milliseconds kWritePeriod(100);
 constexpr std::chrono::milliseconds kSyncPeriod(500);
 // Events are gathered in blocks of this size; one full block wakes the thread early.
@@ -142,7 +142,7 @@ void DiskWriter::WriteBlock(const Block& block) {
   if (begins) {
     SyncFile();  // and looked at, before the new one takes a name that may be its
     std::error_code ignored;
-    std::filesystem::create_directories(folder_, ignored);  // what is wrong there open() tells; room is looked for on the right disk
+    std::filesystem::create_directories(folder_, ignored);  // open() tells the fault; room is looked for on the right disk
   }
   if (HasRoomFor(block)) {
     if (begins && !OpenFile(block.stem)) return;
@@ -182,7 +182,7 @@ void DiskWriter::WriteBlock(const Block& block) {
 }
 
 void DiskWriter::AddMark(std::int64_t num_events) {
-  if (marks_.size() >= kMaxMarks) {  // one more where somebody cut off what another had written
+  if (marks_.size() >= kMaxMarks) {  // one more where somebody cut off bytes that another program had written
     std::size_t num_kept = 0;
     for (auto i = (marks_.size() + 1) % 2; i < marks_.size(); i += 2) marks_[num_kept++] = marks_[i];  // the last one stays
     marks_.resize(num_kept);
@@ -199,7 +199,7 @@ bool DiskWriter::HasRoomFor(const Block& block) {
     status_.free_bytes = free_bytes;
     was_full = status_.is_full;
   }
-  if (free_bytes < 0) return true;  // what is wrong there the write tells
+  if (free_bytes < 0) return true;  // the write tells the fault
   const io::DiskReserve reserve(limits_.reserve_bytes);
   const auto needed_bytes = was_full ? reserve.bytes_to_go_on() : reserve.bytes();
   if (free_bytes - static_cast<std::int64_t>(block.bytes.size()) >= needed_bytes) return true;
@@ -260,7 +260,7 @@ bool DiskWriter::OpenFile(const std::string& stem) {
   return true;
 }
 
-// What is torn is cut off: the log ends with a whole event. If somebody has cut it as well it is not made longer, and what was lost is counted.
+// A torn event is cut off: the log ends with a complete event. If somebody has cut the file as well it is not made longer, and the loss is counted.
 // @param torn_bytes  of the last block, that were taken
 void DiskWriter::CutTorn(std::int64_t torn_bytes, std::string& reason) {
   struct stat own {};
@@ -302,7 +302,7 @@ void DiskWriter::CheckFile(const Block* last_block) {
   const bool is_name_there = lstat(file_.c_str(), &named) == 0;
   const std::int64_t size_bytes = own.st_nlink == 0 ? 0 : own.st_size;
   if (size_bytes < file_bytes_) {
-    // Cut to `kept_bytes`, behind which what was written since stands.
+    // Cut to `kept_bytes`, behind which the later bytes stand.
     const auto last_bytes = last_block == nullptr ? 0 : static_cast<std::int64_t>(last_block->bytes.size());
     const bool has_last = last_block != nullptr && size_bytes >= last_bytes;
     const auto kept_bytes = size_bytes - (has_last ? last_bytes : 0);
@@ -318,7 +318,7 @@ void DiskWriter::CheckFile(const Block* last_block) {
     const auto old_bytes = std::exchange(file_bytes_, size_bytes);
     {
       const std::lock_guard lock(mutex_);
-      num_lost_bytes = std::min(num_lost_bytes, status_.num_bytes);  // what another program wrote was never counted
+      num_lost_bytes = std::min(num_lost_bytes, status_.num_bytes);  // bytes of another program were never counted
       status_.num_lost_fault += num_lost;
       status_.num_events -= num_lost;
       status_.num_bytes -= num_lost_bytes;

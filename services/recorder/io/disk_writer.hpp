@@ -1,4 +1,4 @@
-// Bytes of events to files, in a thread of its own: a disk that stands still for seconds does not hold up who receives.
+// Writes bytes of events to files, in a thread of its own: a disk that stands still for seconds does not hold up the receiver.
 #pragma once
 
 #include <sys/types.h>
@@ -18,7 +18,7 @@
 
 namespace lookout::recorder {
 
-/// What the writer asks of the operating system; a test puts faults in its place.
+/// The system calls of the writer; a test puts faults in their place.
 struct Disk {
   std::function<ssize_t(int descriptor, const void* data, std::size_t size)> write;  // as write(2)
   std::function<int(int descriptor)> sync;                                           // as fdatasync(2)
@@ -29,11 +29,11 @@ struct Disk {
 Disk RealDisk();
 
 struct DiskLimits {
-  std::int64_t queue_bytes = 0;    // what may wait for the disk; an event beyond it is lost
+  std::int64_t queue_bytes = 0;    // events may wait for the disk up to this; further ones are lost
   std::int64_t reserve_bytes = 0;  // of the disk, is not written into
 };
 
-/// What became of the events, since the start.
+/// Counts of events, since the start.
 struct DiskStatus {
   std::filesystem::path file = {};  // that is written, or was last
   bool is_recording = false;
@@ -57,23 +57,23 @@ struct DiskStatus {
   std::int64_t num_lost() const { return num_lost_fault + num_lost_full + num_lost_queue_full; }
 };
 
-/// Files are written in blocks of whole events. A block that the disk does not take whole is cut off again, so that a log ends with a whole event,
-/// and its file is closed; what comes until the next BeginFile is lost. The file is locked (flock). After each block and each sync it is looked at:
-/// one that was deleted, or cut, has lost what was in it; one that is not any more under its name, or to which somebody else writes, is written on
-/// until the next BeginFile. Everything is on the disk (fdatasync) at most 0.7 s after Append, unless the disk itself needs longer.
+/// Files are written in blocks of complete events. A block that the disk does not take whole is cut off again, so that a log ends with a complete
+/// event, and its file is closed; events until the next BeginFile are lost. The file is locked (flock). After each block and each sync it is looked
+/// at: a deleted or cut file has lost its events; a file that has lost its name, or to which another program writes, is written on until the next
+/// BeginFile. Each event is on the disk (fdatasync) at most 0.7 s after Append, unless the disk itself needs longer.
 class DiskWriter {
  public:
   /// Starts the thread.
   /// @param folder  of the files; made anew when it is gone
   DiskWriter(std::filesystem::path folder, const DiskLimits& limits, Disk disk);
 
-  /// Writes what waits, as far as the disk accepts it.
+  /// Writes the waiting events, as far as the disk accepts them.
   ~DiskWriter();
   DiskWriter(const DiskWriter&) = delete;
   DiskWriter& operator=(const DiskWriter&) = delete;
 
-  /// What follows goes into a new file. Where none can be made, the file before is written on and wants_new_file is set; where there is none either,
-  /// or no room, what follows is lost until the next call that succeeds; no empty file stays.
+  /// Later events go into a new file. Where none can be made, the file before is written on and wants_new_file is set; where there is none either, or
+  /// no room, events are lost until the next call that succeeds; no empty file stays.
   ///
   /// @param stem         of its name; where that is taken "001", "002", ... is put behind it. No file is overwritten
   /// @param first_event  its bytes; not counted as lost with a file that cannot be begun
@@ -112,7 +112,7 @@ class DiskWriter {
   const DiskLimits limits_;
   const Disk disk_;
 
-  mutable std::mutex mutex_;  // of what stands here
+  mutable std::mutex mutex_;  // guards these members
   std::condition_variable wake_;
   std::condition_variable done_;
   std::deque<Block> queue_;

@@ -53,7 +53,7 @@ void SortPoints(std::vector<FootprintPoint>& points, std::vector<FootprintPoint>
   std::ranges::copy(dealt, points.begin());
 }
 
-// Takes out what lies within the four-sided figure of the farthest points along x and y: no corner of the hull (Akl and Toussaint, 1978).
+// Takes out points within the four-sided figure of the farthest points along x and y: they are no corners of the hull (Akl and Toussaint, 1978).
 void DropInside(std::vector<FootprintPoint>& points) {
   if (points.size() < kManyPoints) return;
   constexpr double kMarginM2 = 1e-6;  // for rounding

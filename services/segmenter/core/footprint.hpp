@@ -41,12 +41,12 @@ struct Rectangle {
 /// The rectangle of least area around a hull; one of its sides is along an edge. Of equals, that of the first edge. Cost: corners.
 Rectangle LeastAreaRectangle(std::span<const FootprintPoint> hull);
 
-/// The box of what stands within a hull, also where only two sides of it are seen: their corner and ends make a triangle, around which three
-/// rectangles have the same area. Of the rectangles with a side along an edge whose area is at most kBoxArea times the least, the one whose sides the
-/// points lie closest to in the mean (the closeness of X. Zhang et al., "Efficient L-Shape Fitting for Vehicle Detection Using Laser Scanners",
-/// IV 2017, here over the edges of the hull instead of all directions).
+/// The box of a thing within a hull of which only two sides may be seen: their corner and ends make a triangle, around which three rectangles have
+/// the same area. Of the rectangles with a side along an edge whose area is at most kBoxArea times the least, the one whose sides the points lie
+/// closest to in the mean (the closeness of X. Zhang et al., "Efficient L-Shape Fitting for Vehicle Detection Using Laser Scanners", IV 2017, here
+/// over the edges of the hull instead of all directions).
 ///
-/// What is longer than kLongestBoxM is no boat: its rectangle is that of least area.
+/// A hull longer than kLongestBoxM is no boat: its rectangle is that of least area.
 ///
 /// @param points  of the hull; of more than kBoxPoints every n-th is looked at
 Rectangle FitBox(std::span<const FootprintPoint> hull, std::span<const FootprintPoint> points);

@@ -7,7 +7,7 @@ namespace lookout::segmenter {
 
 namespace {
 
-// From a point to the stretch between two others, squared.
+// Squared distance from a point to the stretch between two others.
 double SquaredOff(const FootprintPoint& point, const FootprintPoint& from, const FootprintPoint& to) {
   const double x_m = static_cast<double>(to.x_m) - from.x_m;
   const double y_m = static_cast<double>(to.y_m) - from.y_m;

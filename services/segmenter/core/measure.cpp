@@ -84,7 +84,7 @@ void Measurer::MeasureOne(const Scan& scan, std::span<const Return> returns, std
   footprint_.clear();
   const Ring* rings = scan.head.rings.data();
   for (std::size_t i = 0; i < indices.size();) {
-    // Of each column the nearest and the farthest, in this order; of equals the first. Without a branch for each: nobody can guess them.
+    // Of each column the nearest and the farthest return, in this order; of equals the first. Branchless, since a processor cannot guess them.
     const std::int32_t column = returns[static_cast<std::size_t>(indices[i])].column;
     const std::int64_t column_ns = scan.columns.time_ns[static_cast<std::size_t>(column)];
     std::int32_t near_index = indices[i];
@@ -206,7 +206,7 @@ void Measurer::MeasureWaterline(const Scan& scan, std::span<const Return> return
   }
 }
 
-// What there are too many of is put aside with the memory of its corners.
+// Surplus segments are put aside with the memory of their corners.
 void Measurer::Resize(std::size_t count, std::vector<Segment>& segments) {
   while (segments.size() > count) {
     spare_.push_back(std::move(segments.back()));

@@ -1,4 +1,4 @@
-// The fifth step: what is said of each segment.
+// The fifth step: the measurements of each segment.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ enum class Confidence : std::int32_t { kTentative = 1, kSure = 2 };
 /// Why a segment is tentative. Bits as on the wire.
 enum Ground : std::int32_t {
   kFewReturns = 1,  // or very small: a buoy's one return and a drop of spray look the same
-  kScattered = 2,   // many beams between its ends went through it, or what stands around it is scattered
+  kScattered = 2,   // many beams between its ends went through it, or its surroundings are scattered
   kAtSurface = 4,   // hardly higher than the water: foam, a glint, or a log awash
 };
 

@@ -9,7 +9,7 @@
 
 namespace lookout::segmenter {
 
-/// Joins the components of a cluster, leaves out what is too small, and numbers the rest in the order of their first return.
+/// Joins the components of a cluster, leaves out those that are too small, and numbers the rest in the order of their first return.
 class Numbering {
  public:
   /// @param cluster_of_component  [components.count] any numbers below components.count; empty: each is one by itself

@@ -60,7 +60,7 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
   result_.label.assign(scan.num_cells(), 0);
   result_.repeats.clear();
   const auto is_return = [](std::uint16_t range) { return range != 0; };
-  // As many as there may be; in the end those that are looked at. Only what the scans before had not is made new.
+  // As many as there may be; in the end those that are looked at. Only memory that earlier scans did not need is allocated.
   result_.returns.resize(static_cast<std::size_t>(std::ranges::count_if(scan.columns.range, is_return)));
   Return* next_return = result_.returns.data();
   const double range_unit_m = scan.head.range_unit_m;

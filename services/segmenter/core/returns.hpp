@@ -13,10 +13,10 @@ namespace lookout::segmenter {
 /// Why a return is in no segment. Numbers as on the wire.
 enum class Reason : std::int16_t { kRange = 1, kOwnVessel = 2, kFieldOfView = 3, kShadowed = 4, kTooSmall = 5 };
 
-/// What a label says of a return in no segment.
+/// Why a return is in no segment, as its label says.
 constexpr std::int16_t ToLabel(Reason reason) { return static_cast<std::int16_t>(-static_cast<std::int16_t>(reason)); }
 
-/// In the lidar frame. Single precision, as on the wire: what is computed from points holds for the points that are published.
+/// In the lidar frame. Single precision, as on the wire: measurements hold for the published points.
 struct Point {
   float x_m = 0.0F;
   float y_m = 0.0F;
@@ -48,7 +48,7 @@ struct ReturnFilter {
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
 };
 
-/// A return that says once more what another of its shot says: no point of its own.
+/// A return that repeats another of its shot: no point of its own.
 struct Repeat {
   std::int32_t cell = 0;
   std::int32_t of_return = 0;  // index into ClassifiedReturns::returns
@@ -61,12 +61,12 @@ struct ClassifiedReturns {
 };
 
 /// Sorts out the returns that are out of range, else out of the field of view, else of the own vessel, and places the others. Of these, sets apart
-/// those that repeat another of their shot.
+/// the returns that repeat another of their shot.
 ///
-/// In dual return a shot with one echo is reported twice. Ranges are compared in whole range units, and only those of returns that are looked at:
-/// what lies beside one that is not is no repeat, so that no obstacle at a limit is lost.
-/// Point of a return at range r, azimuth a (of its column, plus the offset of its ring) and elevation e: (r cos e cos a, -r cos e sin a,
-/// r sin e + origin height). Cost: one sine and cosine per column and ring, none per return. Allocates nothing once it has seen a scan of that size.
+/// In dual return a shot with one echo is reported twice. Ranges are compared in whole range units, and only those of placed returns: a return beside
+/// a sorted-out one is no repeat, so that no obstacle at a limit is lost. Point of a return at range r, azimuth a (of its column, plus the offset of
+/// its ring) and elevation e: (r cos e cos a, -r cos e sin a, r sin e + origin height). Cost: one sine and cosine per column and ring, none per
+/// return. Allocates nothing once it has seen a scan of that size.
 class ReturnClassifier {
  public:
   explicit ReturnClassifier(const ReturnFilter& filter) : filter_(filter) {}
@@ -76,7 +76,8 @@ class ReturnClassifier {
   const ClassifiedReturns& result() const { return result_; }
 
  private:
-  // Of one ring, so that the direction of a return takes no trigonometry: the azimuths of column and ring are added by the addition theorem.
+  // Sines and cosines of one ring, so that the direction of a return takes no trigonometry: the azimuths of column and ring are added by the addition
+  // theorem.
   struct RingGeometry {
     double cos_elevation_cos_offset;
     double cos_elevation_sin_offset;

@@ -18,7 +18,7 @@ struct Ring {
   friend bool operator==(const Ring&, const Ring&) = default;
 };
 
-/// What all parts of a scan share.
+/// Members that all parts of a scan share.
 struct ScanHead {
   Utime time;      // first firing
   Utime end_time;  // last shot

@@ -18,8 +18,8 @@ constexpr float kEnoughReturns = 4.0F;
 constexpr float kSolidFill = 0.6F;
 // One return is never sure: in a single scan a buoy's and a drop's are alike.
 constexpr std::int32_t kLeastSure = 2;
-// From a lidar at 1 m over calm water, beams of 5 degrees and more below the horizon meet it within 11 m; flatter ones glance off. What rises so high
-// over it is more than a ripple.
+// From a lidar at 1 m over calm water, beams of 5 degrees and more below the horizon meet it within 11 m; flatter ones glance off. A thing that rises
+// so high over it is more than a ripple.
 constexpr float kSurfaceRangeM = 10.0F;
 constexpr float kSurfaceTopM = 0.25F;
 
@@ -53,7 +53,7 @@ std::int32_t GroundOf(PieceFeature feature) {
   return 0;
 }
 
-// Why what is measured of a group leaves doubt whether it is a thing: at least one bit of Ground. Where nothing is plain, that which speaks most
+// Why the measurements of a group leave doubt whether it is a thing: at least one bit of Ground. Where no ground holds, the one that speaks most
 // against a thing.
 std::int32_t GroundsOf(const PieceFeatures& features, const Evidence& thing) {
   const auto of = [&features](PieceFeature feature) { return features[static_cast<std::size_t>(feature)]; };
@@ -75,7 +75,7 @@ std::int32_t GroundsOf(const PieceFeatures& features, const Evidence& thing) {
   return grounds;
 }
 
-// The one place that says what is land and what is sure, by the probabilities as they are published.
+// The one place that decides land and sure, by the probabilities as they are published.
 void Decide(const LookoutParams& params, Segment& segment) {
   const bool is_sure = segment.num_points >= kLeastSure && double{segment.thing_probability} > params.sure_probability;
   const bool is_land = is_sure && double{segment.land_probability} > params.land_probability;

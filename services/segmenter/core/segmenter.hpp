@@ -41,7 +41,7 @@ struct Segments {
   std::int64_t num_repeats = 0;     // returns that repeat another of their shot: labelled as that one, and in no segment's numbers
 };
 
-/// Segments one scan after the other. What it gives depends on that scan alone; what it keeps is memory.
+/// Segments one scan after the other. The result depends on that scan alone; only memory is kept.
 class Segmenter {
  public:
   explicit Segmenter(const Params& params);

@@ -13,19 +13,19 @@ namespace lookout::tracker {
 
 namespace {
 
-// A shore has 72. Of more things the nearest count: in a downpour they are compared one by one.
+// A shore has 72 places. Of more than so many things the nearest count: in a downpour they are compared one by one.
 constexpr std::size_t kMostToldPlaces = 200;
-// Less than it takes to read an alert and to press a button.
+// Less than the time to read an alert and press a button.
 constexpr std::chrono::milliseconds kToldAfter{1000};
 constexpr double kKeptSideRad = DegToRad(60.0);
 constexpr std::size_t kZone = static_cast<std::size_t>(AlertCause::kGuardZone) - 1;
 constexpr std::size_t kApproach = static_cast<std::size_t>(AlertCause::kClosestApproach) - 1;
 constexpr std::size_t kWatch = static_cast<std::size_t>(AlertCause::kWatch) - 1;
-// What has no track is shown for so long after it was seen last.
+// An alert without a track is shown for so long after its thing was seen last.
 constexpr std::chrono::milliseconds kShownFor{500};
 constexpr double kPassedS = 1.0;
 
-// What is not known comes last.
+// Unknown values come last.
 double LastIfUnknown(double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; }
 
 bool IsToldBefore(const Alert& a, const Alert& b) {
@@ -43,7 +43,7 @@ const Track* FindTrack(const Surroundings& around, std::int64_t id) {
   return found == around.tracks->end() ? nullptr : &*found;
 }
 
-// From where it was last, as the boat moves.
+// Distance and bearing to the last place of the thing, as the boat moves.
 void TellFromPlace(Alert& alert, const std::optional<Pose>& own) {
   if (!own || alert.place_map_m.hasNaN()) return;
   const Eigen::Vector2d off = alert.place_map_m - own->position_map_m.head<2>();
@@ -70,7 +70,7 @@ void Alerts::Latch::Update(Utime time, bool is_whole, bool says_on, bool says_of
   if (is_whole || says_on) looks.push_back({time, says_on});
   if (looks.size() > kWindowScans) looks.pop_front();
   if (says_on || !quiet_since) quiet_since = time;
-  // A packet that is lost hides a part of the water, and not the same one for so long.
+  // A lost packet hides a part of the water, and not the same part for so long.
   const bool counts_off = is_whole || ToSeconds(time - *quiet_since) >= kHiddenS;
   if (!is_on) {
     is_on = (says_on && is_known) || std::ranges::count_if(looks, &Look::says_on) >= kScansToRaise;
@@ -151,9 +151,9 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::v
 void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole, const Evidence& evidence, const Surroundings& around) {
   LookFor(entry, thing, time, evidence, around);
   const bool is_lost_for_long = entry.lost && ToSeconds(time - entry.lost->since) >= kHiddenS;
-  // It may be hidden, and is not abaft yet.
+  // The thing may be hidden, and is not abaft yet.
   const bool may_be_there = entry.lost && entry.lost->is_hidden && !is_lost_for_long && !IsAbaft(entry.alert->bearing_rad);
-  // It opens abaft: there is nothing to wait for.
+  // The thing opens abaft: there is nothing to wait for.
   const bool has_passed =
       entry.HasAlert() && IsAbaft(entry.alert->bearing_rad) && evidence[kApproach] != nullptr && evidence[kApproach]->tcpa_s == 0.0;
   const double clear_s = has_passed ? std::min(params_.clear_s, kPassedS) : params_.clear_s;
@@ -175,7 +175,7 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
   UpdatePlaces(entry, time, is_whole, evidence);
 }
 
-// Whether its track is still there; of what is not seen the place as it lies from the boat now.
+// Whether its track is still there; of an alert without one the place as it lies from the boat now.
 void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidence& evidence, const Surroundings& around) {
   const bool is_told = std::ranges::any_of(evidence, [](const Danger* danger) { return danger != nullptr; });
   if (!entry.HasAlert() || is_told) {
@@ -202,7 +202,7 @@ void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidenc
   if (!is_lost && alert.sight == AlertSight::kLost) alert.sight = AlertSight::kSeen;
 }
 
-// What holds, in the words of this scan.
+// An alert that holds, in the words of this scan.
 void Alerts::Tell(Entry& entry, const Evidence& evidence, Utime time) const {
   auto& alert = *entry.alert;
   alert.is_in_zone = entry.causes[kZone].is_on;
@@ -245,7 +245,7 @@ void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidenc
   auto& alert = *entry.alert;
   std::optional<DangerPlace> untold;
   if (!entry.told && alert.state == AlertState::kAcknowledged && !places.empty()) {
-    // It was acknowledged as a thing of one place.
+    // The acknowledgement was given to a thing with one place.
     entry.told.emplace(alert.thing == kUnnamed ? ToldPlaces::Kind::kThings : ToldPlaces::Kind::kLand);
     entry.told->Tell(time, places);
   }
@@ -254,7 +254,7 @@ void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidenc
     entry.untold.Update(time, is_whole, untold.has_value(), !untold, params_.clear_s);
   }
   if (!places.empty()) {
-    // The first one is older than a second, if there is one.
+    // The first look is older than a second, if there is one.
     while (entry.shown.size() > 1 && std::chrono::abs(time - entry.shown[1].time) >= kToldAfter) entry.shown.pop_front();
     entry.shown.push_back({time, std::move(places)});
   }
@@ -269,7 +269,7 @@ void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidenc
   }
 }
 
-// All in the guard zone that has no alert which holds. Call it once the others are up to date.
+// Dangers in the guard zone without an alert that holds. Call this once the others are up to date.
 std::optional<Danger> Alerts::FindUnnamed(const std::map<std::int64_t, Evidence>& dangers) const {
   const Danger* nearest = nullptr;
   std::vector<DangerPlace> places;
@@ -300,7 +300,7 @@ std::optional<Danger> Alerts::FindUnnamed(const std::map<std::int64_t, Evidence>
   return all;
 }
 
-// Whether an alert of something in the guard zone that has a name is so.
+// Whether an alert of a named thing in the guard zone holds.
 bool Alerts::HasNamedInZone(bool (*is_so)(const Alert&)) const {
   return std::ranges::any_of(entries_, [is_so](const auto& item) {
     const auto& [thing, entry] = item;
@@ -311,13 +311,13 @@ bool Alerts::HasNamedInZone(bool (*is_so)(const Alert&)) const {
 void Alerts::Advance(Entry& entry, std::int64_t thing, Utime time) {
   const auto level = entry.warning.is_on ? AlertLevel::kWarning : AlertLevel::kCaution;
   if (!entry.HasAlert()) {
-    // Somebody is being told of the zone anyway. The looks stay: it comes up as soon as nobody is.
+    // Another alert of the zone holds. The looks stay: this alert comes up as soon as none holds.
     if (thing == kUnnamed && HasNamedInZone([](const Alert& alert) { return alert.state == AlertState::kActive; })) {
       entry.causes[kZone].is_on = false;
     }
     if (!entry.IsRaised()) return;
     if (entry.is_over) {
-      // The same thing again, so soon.
+      // The same thing is dangerous again, so soon.
       auto& alert = *entry.alert;
       entry.is_over = false;
       const bool is_known = entry.was_acknowledged && level <= alert.level;
@@ -340,7 +340,7 @@ void Alerts::Advance(Entry& entry, std::int64_t thing, Utime time) {
       alert.is_in_zone = alert.comes_near = false;
       entry.was_acknowledged = alert.state == AlertState::kAcknowledged;
     }
-    // What is named by now has an alert of its own.
+    // A thing that has a name by now has an alert of its own.
     const bool is_named = thing == kUnnamed && HasNamedInZone([](const Alert& other) { return other.Holds(); });
     const bool wants_note = alert.state != AlertState::kAcknowledged && alert.level == AlertLevel::kWarning && !is_named;
     alert.SetState(wants_note ? AlertState::kRectified : AlertState::kCleared, time);
@@ -381,8 +381,8 @@ bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
   return false;
 }
 
-// What was shown a second ago, followed since: what came up between is not acknowledged. What the tracker itself acknowledges for a person (see
-// KeptAcknowledgements) is on the side of the boat where it was told.
+// Places shown a second ago, followed since: a place that came up between is not acknowledged. An acknowledgement by the tracker itself for a person
+// (see KeptAcknowledgements) is on the side of the boat where it was told.
 void Alerts::TellPlaces(Entry& entry, std::int64_t thing, const Acknowledgement& acknowledgement) {
   if (!entry.told) entry.told.emplace(thing == kUnnamed ? ToldPlaces::Kind::kThings : ToldPlaces::Kind::kLand);
   entry.untold = {};

@@ -1,4 +1,4 @@
-// Alerts over time: when they come up, how grave they are, who has taken note, and when they end.
+// Alerts over time: when they come up, how grave they are, their acknowledgement, and when they end.
 #pragma once
 
 #include <array>
@@ -62,7 +62,7 @@ struct Alert {
 };
 
 struct Acknowledgement {
-  Utime time;  // host time of who sent it; of the tracker itself (KeptAcknowledgements) the end of the scan
+  Utime time;  // host time of the sender; of the tracker itself (KeptAcknowledgements) the end of the scan
   std::string source;
   std::int64_t alert_id = 0;
   Utime raised;
@@ -77,7 +77,7 @@ struct AlertParams {
   double clear_s = 3.0;
 };
 
-/// What is known around the boat after a scan, beside the dangers.
+/// The surroundings of the boat after a scan, beside the dangers.
 struct Surroundings {
   std::optional<Pose> own = std::nullopt;                       // placed
   std::optional<std::span<const Track>> tracks = std::nullopt;  // nullopt: nothing is known of any
@@ -85,29 +85,31 @@ struct Surroundings {
 
 /// Source of the states: IEC 62923-1 (bridge alert management): active, acknowledged, rectified, normal.
 ///
-/// The thing is what is alerted: guard zone and closest approach are causes of one alert, which is as grave as the graver.
+/// An alert is of a thing: guard zone and closest approach are causes of one alert, which is as grave as the graver.
 ///
-/// Time goes by the message time of scans. On and off have hysteresis, and so has the level: what says "on" or "warning" must do so in 3 of the
-/// last 5 scans (in one, where a known track enters the guard zone), and must not for clear_s (1 s of what opens abaft) and 5 whole scans. A scan
-/// that is not whole clears nothing, but what it shows counts; only where no scan has said "on" for kHiddenS do all scans clear. Scans older than 1 s
-/// count neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
+/// Time goes by the message time of scans. On and off have hysteresis, and so has the level: a danger must say "on" or "warning" in 3 of the last 5
+/// scans (in one, where a known track enters the guard zone), and must not for clear_s (1 s where it opens abaft) and 5 whole scans. A scan that is
+/// not whole clears nothing, but its dangers count; only where no scan has said "on" for kHiddenS do all scans clear. Scans older than 1 s count
+/// neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
 ///
-/// A thing whose track is gone is lost. Its alert stays where it was seen last: until clear_s where it was looked for and is not there, or is abaft
-/// by now; else, since it may be hidden, for kHiddenS. What comes up again within kSameS, by its name, beside where it was last or where it would
-/// be by now as it went, is the same alert, acknowledged only where it is near and soon; where that has one already the two become one.
+/// A thing whose track is gone is lost. Its alert stays where the thing was seen last: until clear_s where beams looked for it and it is not there,
+/// or where the place is abaft by now; else, since it may be hidden, for kHiddenS. A thing that comes up again within kSameS, by its name, beside its
+/// last place or where it would be by now, has the same alert, acknowledged only where it is near and soon; where it has an alert already the two
+/// become one.
 ///
-/// Nothing is in the guard zone unnoticed because it is named now so, now otherwise: what is in it and has no alert that holds counts for the alert
-/// of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it holds.
+/// Nothing in the guard zone stays unnoticed because its name changes from scan to scan: a thing in it without an alert that holds counts for the
+/// alert of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it
+/// holds.
 ///
-/// No track names land, nor what is of kUnnamed: many things share one alert of these. So there an acknowledgement is one of places (ToldPlaces):
+/// No track names land, nor the things of kUnnamed: many things share one alert of these. So there an acknowledgement is one of places (ToldPlaces):
 /// where 3 of the last 5 scans show a place that was not told, or that came much nearer, the alert is active again and tells of that place.
 ///
 /// A caution that becomes a warning wants a new acknowledgement. A warning that ends without one stays as rectified until it gets one; a caution does
-/// not, nor one of kUnnamed where something in the zone has an alert of its own. What holds again meanwhile is the same alert, active. Of rectified
-/// ones the newest 16 stay.
+/// not, nor one of kUnnamed where something in the zone has an alert of its own. A rectified alert that holds again is the same alert, active. Of
+/// rectified ones the newest 16 stay.
 ///
-/// Where all tracks are forgotten their alerts end by themselves, since no danger comes of them any more; KeptAcknowledgements knows what people took
-/// note of.
+/// Where all tracks are forgotten their alerts end by themselves, since no danger comes of them any more; KeptAcknowledgements holds the acknowledged
+/// ones.
 class Alerts {
  public:
   static constexpr std::size_t kWindowScans = 5;
@@ -118,15 +120,16 @@ class Alerts {
   /// Longer than a small boat stays behind another or behind a pile.
   static constexpr double kHiddenS = 10.0;
   static constexpr double kSameS = 10.0;
-  /// A thing that is found again: its outline begins elsewhere, and it has moved on.
+  /// How far off a thing is found again: its outline begins elsewhere, and it has moved on.
   static constexpr double kSamePlaceM = 3.0;
 
   explicit Alerts(const AlertParams& params) : params_(params) {}
 
   /// One scan. Call Acknowledge and Rename of that scan before.
   /// @param is_whole  no part and no packet of it was lost
-  /// @param dangers   what is not among them has a probability of 0
-  /// @return also what did not change, the gravest first: what holds, warnings, active ones, then by time, distance, id. A cleared alert is told once
+  /// @param dangers   any other thing has a probability of 0
+  /// @return also unchanged alerts, the gravest first: those that hold, warnings, active ones, then by time, distance, id. A cleared alert is told
+  /// once
   const std::vector<Alert>& Update(Utime time, bool is_whole, const std::vector<Danger>& dangers, const Surroundings& around = {});
 
   /// @return false where there is no such alert, of this id and raised at this time, or it wants none
@@ -164,7 +167,7 @@ class Alerts {
     }
     void ForgetLooks();
   };
-  // What a scan says of a thing, by cause; nullptr: nothing.
+  // The danger of a thing in a scan, by cause; nullptr: none.
   using Evidence = std::array<const Danger*, 3>;
   struct Lost {
     Utime since;
@@ -177,12 +180,11 @@ class Alerts {
     bool is_over = false;           // its end was told
     bool was_acknowledged = false;  // when it ended
     std::optional<Lost> lost;
-    // Of its track, when it was known last.
+    // Of its track, when that was known last.
     bool was_likely = true;
     Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
     Utime placed;  // when its place was told last
-    // Of land and of kUnnamed alone.
-    // The scans of the last second that showed any: an acknowledgement is of what a person can have seen.
+    // Of land and of kUnnamed alone. The scans of the last second that showed any: an acknowledgement is of places that a person can have seen.
     struct Shown {
       Utime time;
       std::vector<DangerPlace> places;

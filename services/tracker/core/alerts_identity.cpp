@@ -1,4 +1,4 @@
-// Which thing an alert is of: what becomes one, is found again, or loses its map.
+// The thing of an alert: when things become one, are found again, or lose their map.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,10 +12,10 @@ namespace {
 
 // How far off a lost thing may be by now, for each second.
 constexpr double kMovedOnMps = 0.5;
-// How long before the end of the old track, or before the alert of what had no name, the new one may have begun.
+// How long before the end of the old track, or before the alert of a thing without a name, the new one may have begun.
 constexpr std::chrono::seconds kBeganBefore{2};
 
-// What comes up again so near, and so soon, is what was lost.
+// A thing that comes up again so near, and so soon, is the lost one.
 constexpr double kSurelySameM = 5.0;
 constexpr double kSurelySameS = 10.0;
 
@@ -27,15 +27,15 @@ DangerPlace PlaceOf(const Alert& alert) { return {alert.distance_m, alert.bearin
 
 bool Alerts::Entry::WasLost() const { return lost || (is_over && (alert->end == AlertEnd::kHidden || alert->end == AlertEnd::kGone)); }
 
-// To where it was last, or would be by now. Precondition: it has an alert with a place.
+// Distance to the last place of the thing, or to where it would be by now. Precondition: it has an alert with a place.
 double Alerts::Entry::DistanceTo(const Eigen::Vector2d& place_map_m, Utime time) const {
   const Eigen::Vector2d stood = alert->place_map_m - place_map_m;
   const Eigen::Vector2d went = stood + ToSeconds(time - placed) * velocity_mps;
   return std::min(stood.norm(), went.norm());
 }
 
-// The alert of what was lost, or had no name, goes on under the name under which it is found: at the same place. What was found before the old track
-// was given up has an alert of its own: then the two become one.
+// The alert of a lost thing, or of one without a name, goes on under the name of the thing that is found at the same place. Where that was found
+// before the old track was given up it has an alert of its own: then the two become one.
 void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
   if (IsOfPlaces(thing) || danger.place_map_m.hasNaN()) return;
   const auto own = entries_.find(thing);
@@ -46,11 +46,11 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
   for (auto item = entries_.begin(); item != entries_.end(); ++item) {
     const auto& [other, entry] = *item;
     if (item == own || !entry.alert || entry.alert->place_map_m.hasNaN()) continue;
-    // What was lost; not what is over and goes on where it is clear.
+    // A lost thing; not an alert that is over and goes on where it is clear.
     const bool is_nameless = other == kUnnamed && entry.HasAlert() && entry.alert->Holds();
     const bool is_lost_now = HasTrack(other) && entry.lost && entry.HasAlert() && entry.alert->Holds();
     const bool is_free = has_own ? is_lost_now : HasTrack(other) ? entry.WasLost() : is_nameless;
-    // Something else that comes by there was seen before.
+    // Another thing that comes by was seen before.
     const Utime since = HasTrack(other) ? entry.alert->seen : entry.alert->raised;
     if (!is_free || danger.first < since - kBeganBefore) continue;
     // Beyond what it may have moved otherwise.
@@ -65,7 +65,7 @@ void Alerts::Adopt(std::int64_t thing, Utime time, const Danger& danger) {
   auto moved = entries_.extract(best);
   entries_.erase(thing);
   auto& entry = moved.mapped();
-  // So far off, or so late, it may be another boat: nobody has taken note of that.
+  // So far off, or so late, the thing may be another boat, which nobody has acknowledged.
   const bool is_sure = entry.DistanceTo(danger.place_map_m, time) <= kSurelySameM && ToSeconds(time - entry.alert->seen) <= kSurelySameS;
   if (!is_sure) {
     entry.was_acknowledged = false;

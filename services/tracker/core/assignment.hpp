@@ -1,4 +1,4 @@
-// Who is who: the pairs of rows and columns that cost least together.
+// Assignment: the pairs of rows and columns that cost least together.
 #pragma once
 
 #include <cstdint>

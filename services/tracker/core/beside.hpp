@@ -1,4 +1,4 @@
-// What lies beside what.
+// Whether outlines lie beside each other.
 #pragma once
 
 #include <Eigen/Core>

@@ -21,22 +21,22 @@ constexpr double kNearSdM = 0.04;
 constexpr double kNearSdPerRange = 0.001;
 constexpr double kEndSdM = 0.04;
 constexpr double kEndSdPerRange = 0.0035;
-// What of a thing is seen changes with waves, aspect and beams that just meet it, over about a second: by so much, and by a share of its size.
+// The visible part of a thing changes with waves, aspect and beams that just meet it, over about a second: by so much, and by a share of its size.
 constexpr double kOutlineSdM = 0.05;
 constexpr double kOutlineSdPerSize = 0.03;
 constexpr double kOutlineS = 0.5;
 constexpr double kHeadingSdRad = 0.0035;  // 0.2 deg, of a compass with two antennas; it changes as the boat turns
-// At first it is not known what of it is seen: so many times that, less and less over some seconds.
+// At first the visible share is unknown: so many times that error, less and less over some seconds.
 constexpr double kFirstOutline = 1.5;
 constexpr double kFirstOutlineS = 2.0;
-// A far side that was never seen is assumed as far behind as what is seen is wide: round things are, and a boat is as often seen from an end as from
-// its side. Beyond a boat's beam it is rather seen from its side.
+// A far side that was never seen is assumed as far behind as the visible side is wide: round things are, and a boat is as often seen from an end as
+// from its side. Beyond a boat's beam it is rather seen from its side.
 constexpr double kLeastDepthM = 0.15;
 constexpr double kGreatestAssumedDepthM = 2.0;
 constexpr double kWidestBeamM = 3.0;
 constexpr double kFarSdM = 0.2;
 constexpr double kFarSdPerWidth = 0.5;
-// What of a thing can be seen is not all of it, however long it is looked at: what overhangs, lies low or does not reflect.
+// A part of a thing is never seen, however long it is looked at: overhangs, low parts, parts that do not reflect.
 constexpr double kNeverSeenSdM = 0.05;
 constexpr double kNeverSeenSdPerSize = 0.06;
 // More of it comes into sight at first: by so much and by a share of its size, in the time since then; as if it moved.
@@ -45,7 +45,7 @@ constexpr double kShownSdPerSize = 0.1;
 constexpr double kLeastAgeS = 0.3;
 constexpr double kLeastSideSdM = 0.005;
 constexpr double kSideWanderM2PerS = 0.01 * 0.01;      // outlines change as a boat swings
-constexpr double kStandingWanderM2PerS = 0.03 * 0.03;  // what is moored swings, and positions by GNSS wander
+constexpr double kStandingWanderM2PerS = 0.03 * 0.03;  // a moored thing swings, and positions by GNSS wander
 constexpr double kAccelerationMps2 = 0.12;             // standard deviation over a second, of one that keeps its speed
 constexpr double kManoeuvreMps2 = 0.8;                 // of one that does not; small craft
 constexpr double kManoeuvreSds = 3.0;                  // of the mean of a second, from where it is expected
@@ -56,38 +56,38 @@ constexpr double kTurnS = 10.0;
 constexpr double kTurnKnownRadps = 0.07;  // greatest standard deviation of a rate that is published
 constexpr double kTurnKnownAfterS = 3.0;
 constexpr double kTurnsAfterS = 1.0;
-constexpr double kFirstSpeedMps = 5.0;  // standard deviation of what is not known
+constexpr double kFirstSpeedMps = 5.0;  // standard deviation of an unknown value
 constexpr double kFirstJitterM2 = 0.05 * 0.05;
 constexpr double kLeastJitterM2 = 0.015 * 0.015;
 constexpr double kMostJitterM2 = 4.0;
 constexpr double kJitterGain = 0.1;
-// Evidence of motion is that of some 3 s.
+// Evidence of motion covers some 3 s.
 constexpr double kMotionMemoryS = 3.0;
 constexpr double kMovingPriorLogOdds = -2.0;
 constexpr double kGreatestLogOdds = 12.0;
-// Motion must stand out by itself, and goes on while it does half as much.
+// Motion must stand out by itself, and goes on while the evidence is half as much.
 constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
 constexpr double kSpeedSdsOn = 1.5;
 constexpr double kMovesAfterS = 0.6;
-// Deviation of the velocity of what is elsewhere than it was expected. It is rather another part of the same thing, since waves show one and hide the
-// other, than a motion; what goes on the same way moves. Chosen on seeds 21 to 24 of the own scenes.
+// Deviation of the velocity of a thing that is not where it was expected. It rather shows another part, since waves show one and hide the other, than
+// moves; a thing that goes on the same way moves. Chosen on seeds 21 to 24 of the own scenes.
 constexpr double kJumpMps = 0.1;
 constexpr double kGoesOnMps = 1.0;
 constexpr double kJumpsWithinS = 3.0;
 constexpr double kLoosenedS = 1.0;
-// Of what goes on as another track.
+// Of a track that goes on as another track.
 constexpr double kOtherTrackMps = 0.3;
 
 constexpr std::size_t kMostParts = 3;  // beside the one that is seen
-// Where less than all is seen, it is a part: by so many deviations, and by a share of the size.
+// A measurement that is shorter than the known outline is a part: by so many deviations, and by a share of the size.
 constexpr double kPartSds = 2.0;
 constexpr double kPartShare = 0.15;
 
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// What a place is uncertain by from scan to scan. The errors of mounting and heading, which turn all of it about the boat, stay as they are
-// meanwhile: of the covariance only what is more than theirs, about a degree, is noise.
+// Uncertainty of a place from scan to scan. The errors of mounting and heading, which turn all places about the boat, stay as they are meanwhile:
+// only the part of the covariance beyond theirs, about a degree, is noise.
 Eigen::Matrix2d NoiseOf(const Eigen::Matrix2d& covariance_m2, double range_m) {
   constexpr double kTurnedRad = 0.015;
   const double turned_m = kTurnedRad * range_m;
@@ -128,7 +128,7 @@ Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const S
   return measured;
 }
 
-// Whether less is seen than is known of this part.
+// Whether the measurement is shorter than this part.
 Body::Measured Body::MeasuredBy(Measured measured, const Reaches& known) const {
   measured.short_m = 0.0;
   for (std::size_t i = 0; i < kDirections / 2; ++i) {
@@ -178,7 +178,7 @@ Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const
   const auto first = FirstOutline(Measure(seen_m, sides, range_m), seen_m);
   standing_ = first_m_ = first.middle_m;
   sides_ = first.sides;
-  // The position is where the sides are counted from: it is known, the sides are not.
+  // The position is the origin of the sides: it is known, the sides are not.
   standing_m2_ = Eigen::Matrix2d::Identity() * kLeastJitterM2 + NoiseOf(noise_m2, range_m);
   moving_ << first.middle_m, Eigen::Vector2d::Zero(), 0.0;
   moving_covariance_.setZero();
@@ -262,7 +262,7 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Reaches& known, const 
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int num_edges = 0;
   if (measured.short_m > 0.0) {
-    // A part is somewhere in it, and for the while it is seen there.
+    // A part lies somewhere in the outline, and for now where it is seen.
     constexpr double kTimes = 2.0;
     const double weight = 1.0 / (kTimes * 0.25 * measured.short_m * measured.short_m);
     information = weight * Eigen::Matrix2d::Identity();
@@ -299,7 +299,7 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Reaches& known, const 
   const auto off_by = [](const Eigen::Vector2d& off, const Eigen::Matrix2d& spread) { return off.dot(spread.inverse() * off); };
   const Eigen::Matrix2d spread_moving = shift.covariance_m2 + moving_covariance_.topLeftCorner<2, 2>();
   shift.off = off_by(position + shift.shift_m - moving_.head<2>(), spread_moving);
-  // What is thought to stand may have begun to move: then it is where it would be if it moved.
+  // A thing that is thought to stand may have begun to move: then it is where it would be if it moved.
   if (!prefers_moving_) shift.off = std::min(shift.off, off_by(shift.shift_m, spread_moving + standing_m2_));
   return shift;
 }
@@ -338,7 +338,7 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   last_measured_ = {measured_m, last_measured_[0]};
   num_measured_ = std::min(num_measured_ + 1, 2);
 
-  // An error that stays for a while counts once for that while: as noise of each scan it is as much greater.
+  // An error that lasts for a while counts once for that while: as noise of each scan it is as much greater.
   const Eigen::Vector2d across(-measured.sight.y(), measured.sight.x());
   const double outline_m = outline_sd_m();
   const double heading_m = kHeadingSdRad * range_m;
@@ -352,7 +352,7 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
     return;
   }
   parts_s_ = 0.0;
-  // From where this outline places it: what all sides have in common is motion, or an error of the place. What has stood for long is placed best by
+  // Displacement by this outline: the common part of all sides is motion, or an error of the place. A thing that has stood for long is placed best by
   // where it stands.
   const bool stands = !prefers_moving_ && age_s_ > kFirstOutlineS;
   const Eigen::Vector2d placed_m = stands ? standing_ : measured_m;
@@ -383,7 +383,7 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   standing_ += gain_standing * off_standing;
   standing_m2_ = (Eigen::Matrix2d::Identity() - gain_standing) * standing_m2_;
 
-  // One that stays to one side of where it is expected manoeuvres.
+  // A track that stays to one side of its predicted place manoeuvres.
   const double gain_mean = std::min(1.0, dt_s / kManoeuvreS);
   mean_off_m_ += gain_mean * (off_moving - mean_off_m_);
   const double off = mean_off_m_.dot(spread_moving.inverse() * mean_off_m_) / gain_mean;
@@ -401,7 +401,7 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   const Eigen::Vector2d velocity = velocity_mps();
   const double speed = velocity.norm();
   const double speed_sd = speed > 0.0 ? std::sqrt(velocity.dot(velocity_covariance() * velocity)) / speed : 0.0;
-  // Where it jumps the way it goes, the velocity is less sure for a while, and it moves all the same.
+  // Where the outline jumps the way that the track goes, its velocity is less sure for a while, and it moves all the same.
   const bool is_loosened = stands_out_ && goes_on_ && since_jump_s_ < kLoosenedS;
   stands_out_ = speed > kLeastSpeedMps && (is_loosened || speed > (stands_out_ ? kSpeedSdsOn : kSpeedSds) * speed_sd);
   moved_s_ = stands_out_ && prefers_moving_ ? moved_s_ + dt_s : 0.0;
@@ -454,7 +454,7 @@ void Body::MoveAs(const Body& before) {
 }
 
 void Body::AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
-  // Where it is at the end of the scan.
+  // The place at the end of the scan.
   auto now_m = seen_m;
   auto now_sides = sides;
   if (prefers_moving_) {
@@ -462,7 +462,7 @@ void Body::AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   }
   now_sides.before_s = 0.0;
   const auto first = FirstOutline(Measure(now_m, now_sides, range_m), now_m);
-  // What is known to move shows another part of itself, unless it was not where it should be.
+  // A moving thing shows another part of itself, unless it was not where it should be.
   const bool jumps = has_jumped || !prefers_moving_;
   const Eigen::Vector2d jump_m = first.middle_m - center_m();
   goes_on_ = jumps && since_jump_s_ < kJumpsWithinS && jump_m.dot(last_jump_m_) > 0.0;
@@ -471,7 +471,7 @@ void Body::AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   const double jump_mps = jumps ? (goes_on_ ? kGoesOnMps : kJumpMps) : 0.0;
   moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
   if (goes_on_) {
-    // What was seen before is where it was, and no part of it.
+    // The earlier outline is where it was, and no part of the thing.
     others_.clear();
   } else {
     if (others_.size() == kMostParts) others_.erase(std::ranges::max_element(others_, {}, &Part::unseen_s));

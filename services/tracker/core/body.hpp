@@ -1,4 +1,4 @@
-// How one thing moves, and how far it reaches: two motion hypotheses over the parts that are seen of it.
+// Motion and extent of one thing: two motion hypotheses over its parts.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,25 +10,25 @@
 
 namespace lookout::tracker {
 
-/// What of a seen outline lies at the edge of the thing, and not at the edge of what can be seen of it.
+/// Which sides of a seen outline are edges of the thing, and not edges of its visible part.
 struct Sides {
   Eigen::Vector2d from_m = Eigen::Vector2d::Zero();  // the lidar, on the map
   bool is_left_hidden = false;                       // seen from there
   bool is_right_hidden = false;
-  double before_s = 0.0;  // the state's time, by so much: what moves was not yet where it is
+  double before_s = 0.0;  // the state's time, by so much: a moving thing was not yet where it is
 };
 
-/// A thing that stands, or moves and turns. The outline is anchored at the position: the hidden far side is what was seen before, or assumed.
+/// A thing that stands, or moves and turns. The outline is anchored at the position: the hidden far side is as it was seen before, or assumed.
 ///
 /// A measurement is compared side by side: how far the seen outline reaches in each direction from which it is seen, against how far the known one
-/// does from the predicted position. So more or less of a thing in sight is no motion, and the side that is seen does not draw the centre towards the
-/// boat. Where the sides do not agree, it counts the less.
+/// does from the predicted position. So a larger or smaller visible part is no motion, and the side that is seen does not draw the centre towards the
+/// boat. Where the sides do not agree, the measurement counts the less.
 ///
-/// A thing has parts that are seen by turns, as the bow of a kayak and who sits in it. Each has its own sides, counted from the one position. A
+/// A thing has parts that are seen by turns, as the bow of a kayak and its paddler. Each has its own sides, counted from the one position. A
 /// measurement is compared with the part that it fits best, so a change of part is no motion, and the outline is that around all parts. A part that
 /// was not seen for 6 s, while others were, is forgotten.
 ///
-/// What is seen of a thing changes over seconds, not from scan to scan: errors of the outline are taken as such, for the covariance to be honest.
+/// The visible part changes over seconds, not from scan to scan: errors of the outline last, for the covariance to be honest.
 class Body {
  public:
   /// @param seen_m  outline, map
@@ -37,51 +37,52 @@ class Body {
 
   void Predict(double dt_s);
 
-  /// What a seen outline says of the position: its distance from the predicted one, with covariance; large along what it does not show.
+  /// The measurement of the position by a seen outline: its distance from the predicted one, with covariance; large along directions that it does not
+  /// show.
   struct Shift {
     Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();
     Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
     double off = 0.0;  // squared, in deviations of the predicted position and of the shift itself: 2 in the mean
 
-    double misfit = 0.0;   // mean square of what is left of each side, in its deviations: 1 in the mean where it is the same thing
-    bool is_part = false;  // less of it is seen than is known
+    double misfit = 0.0;   // mean square of the residual of each side, in its deviations: 1 in the mean where it is the same thing
+    bool is_part = false;  // a smaller part is seen than is known
   };
   Shift ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const;
 
-  /// @param grows  false where the seen outline may hold something else too: then it moves nothing but the position
+  /// @param grows  false where the seen outline may hold another thing too: then it moves nothing but the position
   void Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows);
 
-  /// All of it, at the predicted position.
+  /// The whole outline, at the predicted position.
   std::vector<Eigen::Vector2d> Outline() const;
   double SeenShare() const;
-  /// Where what is fixed to the thing is on the map: it moves and turns with it, also where the middle of what is known of it does not.
+  /// The frame fixed to the thing, on the map: it moves and turns with it, also where the middle of its known outline does not.
   Eigen::Isometry2d Frame() const;
-  /// By how much that has moved since it was seen first.
+  /// Motion of that frame since the thing was seen first.
   double moved_m() const { return (Frame().translation() - first_m_).norm(); }
 
   /// All positions may have moved together by so much: the own position became better known.
   void Loosen(double variance_m2);
   /// The map was elsewhere by so much.
   void Translate(const Eigen::Vector2d& by_m);
-  /// It was seen together with land only: where it comes to rest is not seen, so what is known of its velocity fades.
+  /// It was seen together with land only: where it comes to rest is not seen, so its velocity fades.
   void Fade(double dt_s);
-  /// What lies beside it is of it, too.
+  /// A segment beside it belongs to it, too.
   void Include(const std::vector<Eigen::Vector2d>& outline_m);
-  /// It is what was followed as another before: where and how large it is stays, how it moves is taken from there, less sure.
+  /// It was followed as another track before: its place and size stay, its motion is taken from that track, less sure.
   void MoveAs(const Body& before);
-  /// Another part of the same thing is seen: where it is and how it moves stays, since what else is seen says nothing of that.
+  /// Another part of the same thing is seen: place and motion stay, since another part says nothing of them.
   /// @param has_jumped  it was not where it should be: the velocity is less sure
   void AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped);
   /// Forgets all parts but the one that was seen last.
   void KeepSeenPart() { others_.clear(); }
 
-  /// Of the hypothesis that holds: moving where its probability is above the threshold.
+  /// State of the hypothesis that holds: moving where its probability is above the threshold.
   bool IsMoving(double threshold) const { return moving_probability_ > threshold; }
   double moving_probability() const { return moving_probability_; }
   Eigen::Vector2d center_m() const;  // middle of the outline
   Eigen::Vector2d velocity_mps() const { return moving_.segment<2>(2); }
   Eigen::Matrix4d covariance() const;  // of centre and velocity, relative to the own boat
-  /// Clockwise; NaN where it is not known: of what has not moved for long, or too slowly.
+  /// Clockwise; NaN where it is not known: of a track that has not moved for long, or too slowly.
   double turn_rate_radps() const;
 
  private:
@@ -93,7 +94,7 @@ class Body {
     bool is_seen = false;
   };
   using Reaches = std::array<Side, kDirections>;
-  // What is seen of a thing by itself, as its bow, or its crew.
+  // A part of a thing that is seen by itself, as its bow, or its crew.
   struct Part {
     Reaches sides;
     double unseen_s = 0.0;  // for how long others were seen
@@ -102,7 +103,7 @@ class Body {
   Measured Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const;
   Measured MeasuredBy(Measured measured, const Reaches& known) const;
   Shift ShiftOf(const Measured& measured, const Reaches& known, const Eigen::Matrix2d& noise_m2, double range_m) const;
-  // Which of the others is seen; nullopt: the one that was seen last.
+  // The other part that is seen; nullopt: the one that was seen last.
   std::optional<std::size_t> PartOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const;
   Reaches WholeSides() const;
   void ForgetParts(double dt_s);

@@ -1,4 +1,4 @@
-// What a scan says of a body: for the files of Body alone.
+// A scan's measurement of a body: for the files of Body alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,10 +14,10 @@ struct Body::Measured {
   std::array<double, kDirections> variance_m2{};
   std::array<Kind, kDirections> kind{};
   Eigen::Vector2d sight = Eigen::Vector2d::Zero();
-  // Less of it is seen than is known, from end to end, by so much; 0: all of it is.
+  // A smaller part is seen than is known, from end to end, by so much; 0: all of it is.
   double short_m = 0.0;
 
-  // Whether it says where a side lies. A part lies in the outline: it says so much only where it reaches beyond.
+  // Whether the measurement says where a side lies. A part lies in the outline: it says so only where it reaches beyond.
   bool Tells(std::size_t i, double beyond_m) const { return short_m > 0.0 ? beyond_m > 0.0 : kind[i] == Kind::kEdge; }
 };
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double kBoatLengthPerBeam = 2.7;  // small craft: 2.3 to 3.5
 constexpr double kLongestAssumedM = 12.0;
 constexpr double kLongestStepS = 0.2;
-constexpr double kPartsForS = 3.0;  // after so long what was seen in that time is all of it
+constexpr double kPartsForS = 3.0;  // after so long the parts seen in that time are all of it
 constexpr double kPartForgottenS = 6.0;
 constexpr double kGreatestOutlineSizeM = 10.0;
 
@@ -31,7 +31,7 @@ Support Body::SupportFrom(const std::vector<Eigen::Vector2d>& corners_m) const {
   return SupportOf(turned_back);
 }
 
-// The position to the middle of the outline: what turns does so about it.
+// From the position to the middle of the outline: a thing turns about its middle.
 void Body::Center() {
   const auto directions = SideDirections();
   const Eigen::Vector2d middle = middle_m();
@@ -52,7 +52,7 @@ double Body::size_m() const {
   return std::min(size_m, kGreatestOutlineSizeM);
 }
 
-// What lies beyond the outline is of it, too. Where only parts are seen for long, what was seen of it is all.
+// Sides beyond the outline belong to it, too. Where only parts are seen for long, they are all.
 void Body::TakePart(const Measured& measured, double dt_s) {
   const auto directions = SideDirections();
   if (parts_s_ == 0.0) parts_reach_m_.fill(-std::numeric_limits<double>::infinity());
@@ -69,7 +69,7 @@ void Body::TakePart(const Measured& measured, double dt_s) {
   if (is_all) parts_s_ = 0.0;
 }
 
-// The hidden side of a boat under way: its length lies along its course, and what is seen across says how long it is.
+// The hidden side of a boat under way: its length lies along its course, and its visible width says how long it is.
 void Body::AssumeBy(const Measured& measured) {
   const Eigen::Vector2d& sight = measured.sight;
   const Eigen::Vector2d course = velocity_mps().normalized();

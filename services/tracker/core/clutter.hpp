@@ -1,4 +1,4 @@
-// How dense clutter is where: learnt from what did not last.
+// Density of clutter by place, learnt from segments that did not last.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@ class ClutterMap {
  private:
   static constexpr std::size_t kSectors = 12;
   static constexpr std::size_t kRings = 10;
-  static constexpr double kRingM = 10.0;  // the last reaches to the end
+  static constexpr double kRingM = 10.0;      // the last reaches to the end
   static constexpr std::size_t kClasses = 6;  // 1, 2 to 3, 4 to 7 and so on; the last is 32 and more
   using Counts = std::array<double, kSectors * kRings>;
   static std::size_t IndexOf(const Eigen::Vector2d& place_vessel_m);

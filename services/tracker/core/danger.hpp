@@ -1,4 +1,4 @@
-// What one scan says of one thing that may be dangerous.
+// A danger: one thing in one scan that may be dangerous.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,19 +16,19 @@ namespace lookout::tracker {
 enum class AlertCause : std::int32_t { kGuardZone = 1, kClosestApproach = 2, kWatch = 3 };
 enum class AlertLevel : std::int32_t { kCaution = 1, kWarning = 2 };
 
-// As the thing of an alert or a danger, beside the ids of tracks: land with all that stands beside it; and what is in the guard zone and is no track
-// yet, or has no place on the map.
+// As the thing of an alert or a danger, beside the ids of tracks: land with all that stands beside it; and things in the guard zone that are no track
+// yet, or have no place on the map.
 inline constexpr std::int64_t kLandTrack = 0;
 inline constexpr std::int64_t kUnnamed = -1;
 // Those of -2 and below are tentative tracks; from here down they are parts of the guard zone that nobody looks into.
 inline constexpr std::int64_t kFirstUnseenId = -1'000'000;
-// What many things share.
+// An alert that many things share.
 constexpr bool IsOfPlaces(std::int64_t thing) { return thing == kLandTrack || thing == kUnnamed || thing <= kFirstUnseenId; }
 
 /// By one cause. Of one thing there may be one of each cause.
 struct Danger {
   AlertCause cause = AlertCause::kGuardZone;
-  std::int64_t thing = kLandTrack;          // the track, or what it belongs to
+  std::int64_t thing = kLandTrack;          // the track, or the thing that it belongs to
   std::int64_t nearest_track = kLandTrack;  // of the thing; 0: none, or land
   TrackKind kind = TrackKind::kUnknown;     // of it
   double probability = 0.0;                 // of a guard zone 1: it is in it
@@ -43,10 +43,10 @@ struct Danger {
   Utime first = {};           // seen
   Utime seen = {};            // last
   Eigen::Vector2d place_map_m = Eigen::Vector2d::Constant(kNan);
-  std::vector<DangerPlace> places = {};  // of land and of what has no track, at least one: so far an acknowledgement goes
+  std::vector<DangerPlace> places = {};  // of land and of things without a track, at least one: so far an acknowledgement goes
 };
 
-/// Of two of one cause and one thing the one that is told: what is likely, then what is grave, then the sooner, then the nearer.
+/// Of two dangers of one cause and one thing the one that is told: the likely one, then the graver, then the sooner, then the nearer.
 bool IsGraver(const Danger& one, const Danger& other);
 
 }  // namespace lookout::tracker

@@ -25,7 +25,7 @@ constexpr double kLikelyApproach = 0.5;
 // Drops of rain, spray and most crests are gone by then.
 constexpr double kStaysS = 0.8;
 constexpr std::chrono::milliseconds kSeenNow{300};
-// What comes up so near to a known thing is a part of it until it is a track of its own.
+// A thing that comes up so near to a known one is a part of it until it is a track of its own.
 constexpr double kPartM = 2.0;
 
 std::vector<Eigen::Vector2d> InVessel(std::span<const Eigen::Vector2d> corners_map_m, const Pose& own) {
@@ -58,7 +58,7 @@ DangerPlace PlaceOf(const Track& track, const Pose& own) {
   return {off.norm(), WrapTo2Pi(Atan2(off.x(), off.y()) - own.heading_rad), place_m};
 }
 
-// What is in the zone under one name.
+// The part of a thing in the zone, under one name.
 struct InZone {
   std::optional<NearestPoint> nearest;
   std::vector<NearestPoint> things;  // the nearest point of each obstacle
@@ -101,7 +101,7 @@ Danger DangerOf(std::int64_t thing, const InZone& found, const std::vector<Neare
   return danger;
 }
 
-// Known things, to which what is no track yet may belong.
+// Known things, to which an obstacle without a track may belong.
 class KnownThings {
  public:
   KnownThings(const Picture& picture, std::span<const VesselOutline> outlines, const Things& things, const Pose& own) {
@@ -129,7 +129,7 @@ class KnownThings {
       return least_m;
     }
   };
-  // nullptr: it belongs to none.
+  // nullptr: the obstacle belongs to no known thing.
   const Known* Find(const NearestPoint& point) const {
     const auto [sine, cosine] = SinCosOf(point.bearing_rad);
     const Eigen::Vector2d place_m(point.range_m * cosine, -point.range_m * sine);
@@ -149,7 +149,7 @@ class KnownThings {
   std::vector<Known> known_;
 };
 
-// The nearest land of the zone in each bin of bearing: of what is land, an acknowledgement covers these.
+// The nearest land of the zone in each bin of bearing: an acknowledgement of land covers these.
 class ShoreBearings {
  public:
   explicit ShoreBearings(const GuardZoneParams& zone) : zone_(zone) {}
@@ -178,12 +178,12 @@ class ShoreBearings {
   static constexpr double kBinRad = kTwoPi / kBins;
   static_assert(kBinRad <= 0.5 * ToldPlaces::kBesideRad);
 
-  // In steps that pass over no bin.
+  // In steps small enough to miss no bin.
   void AddEdge(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
     const double length_m = (to_m - from_m).norm();
     if (length_m == 0.0) return;
     const Eigen::Vector2d along = (to_m - from_m) / length_m;
-    // What of it lies within the range.
+    // The part of it within the range.
     const double middle_m = -from_m.dot(along);
     const double half2_m2 = zone_.range_m * zone_.range_m - (from_m + middle_m * along).squaredNorm();
     if (half2_m2 < 0.0) return;
@@ -207,7 +207,7 @@ class ShoreBearings {
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
                                      const std::optional<Pose>& own, const Things& things, Newcomers* newcomers, Utime time) {
   if (params.range_m <= 0.0) return {};
-  std::map<std::int64_t, InZone> in_zone;  // of each thing, land and what has no name
+  std::map<std::int64_t, InZone> in_zone;  // of each thing, land and things without a name
   std::vector<NearestPoint> unnamed;
   std::optional<KnownThings> known;
   ShoreBearings shore(params);

@@ -1,4 +1,4 @@
-// What of a scan's picture is a danger: things in the guard zone, and tracks that come too near.
+// The dangers of a scan's picture: things in the guard zone, and tracks that come too near.
 #pragma once
 
 #include <optional>
@@ -19,20 +19,20 @@
 
 namespace lookout::tracker {
 
-/// What is within sector and range, one danger for each thing and one for land. Each obstacle of the scan that is sure, or of a confirmed track,
-/// counts from its first scan on (tentative ones where the zone takes them), as the vessel sees it: along the waterline of land where there is one,
-/// else the outline. So it needs no pose. It is of the track that it was assigned to, of kLandTrack, or of kUnnamed. Confirmed tracks count beyond
-/// what is seen of them now, where the own pose is known. Its places: of land the nearest in each bin of bearing, of what has no name and of a thing
-/// of several tracks the nearest point of each obstacle.
+/// Things within sector and range, one danger for each and one for land. Each obstacle of the scan that is sure, or of a confirmed track, counts from
+/// its first scan on (tentative ones where the zone takes them), as the vessel sees it: along the waterline of land where there is one, else the
+/// outline. So it needs no pose. It is of the track that it was assigned to, of kLandTrack, or of kUnnamed. Confirmed tracks count beyond their
+/// visible part, where the own pose is known. Its places: of land the nearest in each bin of bearing, of things without a name and of a thing of
+/// several tracks the nearest point of each obstacle.
 ///
-/// To be in the zone is worth a look. To act on is what comes nearer than the limit (ClosestApproachDangers); only where the own pose or velocity is
-/// not known, so that nobody can tell, the zone warns.
+/// A thing in the zone is worth a look. A thing that comes nearer than the limit calls for action (ClosestApproachDangers); only where the own pose
+/// or velocity is not known, so that nobody can tell, the zone warns.
 ///
-/// A confirmed track that has been followed for a second, and whose outline by the tracker is in the zone, is known: no scan need say so twice.
-/// What is no confirmed track yet is just seen: crests are sure in single scans, too. A tentative track counts where it is likely to be a thing, and
-/// what has no track where it has stayed for 0.8 s.
+/// A confirmed track that has been followed for a second, and whose outline by the tracker is in the zone, is known: no scan need say so twice. A
+/// thing that is no confirmed track yet is just seen: crests are sure in single scans, too. A tentative track counts where it is likely to be a
+/// thing, and an obstacle without a track where it has stayed for 0.8 s.
 /// @param own        placed, at the end of the scan
-/// @param newcomers  what of the zone had no track in the scans before; nullptr: all counts at once
+/// @param newcomers  obstacles of the zone without a track in the scans before; nullptr: all count at once
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
                                      const std::optional<Pose>& own, const Things& things = {}, Newcomers* newcomers = nullptr, Utime time = {});
 
@@ -54,9 +54,9 @@ struct ApproachParams {
   OwnAbility ability = {};
 };
 
-/// Confirmed and coasting tracks, and land on the boat's way. What leaves no more time than this boat needs to act is grave. Where the own boat lies
-/// still and the track stands, neither comes nearer to the other: of them only the guard zone speaks, so a boat in its berth has peace, while one
-/// that drifts down on a pile is warned.
+/// Confirmed and coasting tracks, and land on the boat's way. A danger that leaves no more time than this boat needs to act is grave. Where the own
+/// boat lies still and the track stands, neither comes nearer to the other: of such pairs only the guard zone speaks, so nothing rings for a boat in
+/// its berth, while one that drifts down on a pile is warned.
 ///
 /// A fast course that is not proven counts only where waiting longer would be too late and while it is seen, and is just seen.
 /// @param own    placed, at the end of the scan; nullopt: nobody knows how near anything will come

@@ -17,9 +17,9 @@ namespace {
 
 using Corners = std::span<const Eigen::Vector2d>;
 
-// Below it a relative motion is none: within a look-ahead of 30 s it is 1.5 m.
+// A slower relative motion is none: within a look-ahead of 30 s it is 1.5 m.
 constexpr double kHardlyMovesMps = 0.05;
-// A track's velocity is 0 until it moves for sure; this is below any way that steers.
+// A track's velocity is 0 until it moves for sure; this is below the speed of any boat under way.
 constexpr double kStandsMps = 0.2;
 // Rule 13: 22.5 deg abaft the beam.
 constexpr double kAbaftBeamRad = DegToRad(112.5);
@@ -27,9 +27,9 @@ constexpr double kReciprocalRad = DegToRad(22.5);
 // Rule 7 a: "if there is any doubt such risk shall be deemed to exist".
 constexpr double kDoubt = 0.05;
 
-// No tracked hull is known better; and what is known too well would need many nodes.
+// No tracked hull is known better; and smaller deviations would need many nodes.
 constexpr double kLeastSdM = 0.05;
-// Beyond so many deviations there is nothing: 6e-5 of a normal distribution.
+// Beyond so many deviations the density is nothing: 6e-5 of a normal distribution.
 constexpr double kReach = 4.0;
 
 // A node between 0 and 1, and its weight.
@@ -63,7 +63,7 @@ struct Piece {
   bool is_entry;           // the relative position may enter through it
 };
 
-// How the relative position is spread at a time, and how it goes with the relative velocity.
+// The distribution of the relative position at a time, and its correlation with the relative velocity.
 struct Spread {
   Eigen::Vector2d mean;
   Eigen::Matrix2d inverse;  // of its covariance
@@ -84,7 +84,7 @@ double GreatestEigenvalue(const Eigen::Matrix2d& m) {
   return 0.5 * (m(0, 0) + m(1, 1)) + Hypot(0.5 * (m(0, 0) - m(1, 1)), 0.5 * (m(0, 1) + m(1, 0)));
 }
 
-// From a polygon; negative inside.
+// Distance from a polygon; negative inside.
 double SignedDistance(Corners polygon, const Eigen::Vector2d& point) {
   double least_m2 = std::numeric_limits<double>::infinity();
   bool is_inside = polygon.size() > 2;
@@ -129,7 +129,7 @@ Approach ApproachOf(Corners polygon, const Eigen::Vector2d& velocity_mps, double
   return approach;
 }
 
-// The region of relative positions that are too near: a polygon and all within the limit of it. In and out of it goes the relative position.
+// The region of relative positions that are too near: a polygon and all places within the limit of it. The relative position enters and leaves it.
 class Passage {
  public:
   Passage(Corners difference, const Eigen::Vector2d& velocity_mps, const RelativeCovariance& covariance, const EncounterParams& params)
@@ -364,7 +364,7 @@ double CourseOf(const Eigen::Vector2d& direction) { return Atan2(direction.x(), 
 
 ClosestApproach ClosestApproachOf(const Moving& own, const Moving& other, const RelativeCovariance& covariance, const EncounterParams& params) {
   if (own.turn_rate_radps != 0.0 || other.turn_rate_radps != 0.0) return ApproachInTurns(own, other, covariance, params);
-  const auto difference = DifferenceOf(own.hull_m, other.hull_m);  // by what the other must be moved for both to touch
+  const auto difference = DifferenceOf(own.hull_m, other.hull_m);  // displacements of the other hull for both to touch
   const Eigen::Vector2d velocity_mps = other.velocity_mps - own.velocity_mps;
   const double distance_m = SignedDistance(difference, Eigen::Vector2d::Zero());
   ClosestApproach approach;

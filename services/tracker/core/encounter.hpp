@@ -1,4 +1,4 @@
-// What a track will do: closest approach of two hulls, its probability, and the encounter as the COLREGs see it.
+// The future of a track: closest approach of two hulls, its probability, and the encounter by the COLREGs.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ using RelativeCovariance = Eigen::Matrix4d;
 
 struct EncounterParams {
   double limit_m = 0.0;       // hull to hull
-  double look_ahead_s = 0.0;  // what comes later does not count
+  double look_ahead_s = 0.0;  // later approaches do not count
 };
 
 // Numbers are those of the wire.
@@ -49,10 +49,10 @@ struct ClosestApproach {
 /// @param covariance  of (other - own); a deviation of position below 5 cm counts as 5 cm
 ClosestApproach ClosestApproachOf(const Moving& own, const Moving& other, const RelativeCovariance& covariance, const EncounterParams& params);
 
-/// Rules 13 to 15: overtaking from more than 22.5 deg abaft the beam of the one that is overtaken; head-on on courses that are reciprocal to 22.5 deg
-/// (rule 14 gives no number); else crossing, where what is to starboard of the own boat has the right of way. NONE where the other stands, where both
-/// part, beyond look_ahead_s, and where the probability says without doubt that it passes far off.
-/// Of each scan alone: rule 13 d, that who overtakes stays so until past and clear, is kept by Tracker.
+/// Rules 13 to 15: overtaking from more than 22.5 deg abaft the beam of the overtaken boat; head-on on courses that are reciprocal to 22.5 deg (rule
+/// 14 gives no number); else crossing, where the boat to starboard of the own one has the right of way. NONE where the other boat stands, where both
+/// part, beyond look_ahead_s, and where the probability says without doubt that it passes far off. Of each scan alone: Tracker keeps rule 13 d, that
+/// an overtaking boat stays so until past and clear.
 /// @param own_heading_rad  from north, clockwise
 Encounter EncounterOf(const Moving& own, double own_heading_rad, const Moving& other, const ClosestApproach& approach, const EncounterParams& params);
 

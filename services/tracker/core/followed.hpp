@@ -24,7 +24,7 @@ inline double Logit(double probability) {
 inline double Sigmoid(double log_odds) { return 1.0 / (1.0 + Exp(-log_odds)); }
 
 inline constexpr double kBirthLogOdds = -2.0;
-inline constexpr double kClearLogOdds = 2.0;       // of what is beyond doubt at first sight
+inline constexpr double kClearLogOdds = 2.0;       // of a thing that is beyond doubt at first sight
 inline constexpr double kFirstStepM2 = 0.3 * 0.3;  // before there was one
 inline constexpr int kMostHits = 30;               // that count in a mean, the last ones most
 inline constexpr int kMostLooks = 60;              // that speak for it
@@ -34,8 +34,8 @@ struct Followed {
   std::int64_t number = 0;  // given when it is confirmed; 0: not yet
   Utime first;
   Utime seen;
-  Utime seen_alone;                        // when it was last seen by itself, and not inside of what another is seen by
-  std::optional<Body> body;                // from when it is likely; before that, what was seen last stands for it
+  Utime seen_alone;                        // when it was last seen by itself, and not inside of another track's sighting
+  std::optional<Body> body;                // from when it is likely; before that, its last sighting stands for it
   std::vector<Eigen::Vector2d> outline_m;  // predicted
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
   double radius_m = 0.0;
@@ -44,9 +44,9 @@ struct Followed {
   double log_odds = kBirthLogOdds;                                   // that something is there that lasts from scan to scan
   double mean_thing = 0.0;                                           // of the log odds of its segments that they are no clutter
   double mean_step_m2 = kFirstStepM2;                                // squared, from where it was expected to where it was seen
-  Eigen::Vector2d seen_m = Eigen::Vector2d::Zero();                  // middle of what was seen last
+  Eigen::Vector2d seen_m = Eigen::Vector2d::Zero();                  // middle of its last sighting
   double seen_radius_m = 0.0;                                        // of it
-  double first_radius_m = 0.0;                                       // of what was seen first
+  double first_radius_m = 0.0;                                       // of its first sighting
   int num_hits = 0;
   int num_alone = 0;       // of these away from all known things and from the own hull, to which parts, gear and crew stand still
   double beams_met = 1.0;  // of those that could have: with one of two as what is known before
@@ -75,8 +75,8 @@ struct Followed {
   double detection = 0.0;                   // probability, this scan
   Encounter overtaking = Encounter::kNone;  // one overtakes the other, until they are past and clear
 
-  // That it is a thing and no clutter that lasts (crest, foam, drops): what its segments look like, how often it was seen, and how steadily it stands
-  // or moves. Fitted: logistic regression; and nothing but things, and what is on the own boat, stands still to some centimetres from scan to scan
+  // That it is a thing and no clutter that lasts (crest, foam, drops): the mean log odds of its segments, how often it was seen, and how steadily it
+  // stands or moves. Fitted: logistic regression; besides, only things, and parts of the own boat, stand still to some centimetres from scan to scan
   // (DECISIONS.md).
   double ThingLogOdds() const {
     constexpr double kLeastStepM = 0.05;
@@ -95,14 +95,15 @@ struct Followed {
     mean_thing += gain * (thing_log_odds - mean_thing);
     if (num_hits > 1) mean_step_m2 += (num_hits == 2 ? 1.0 : gain) * (step_m * step_m - mean_step_m2);
   }
-  // As others know it: a number from 1 up, or one of -2 and below until it is confirmed.
+  // The published id: a number from 1 up, or one of -2 and below until the track is confirmed.
   std::int64_t PublicId() const {
     constexpr std::int64_t kMostAtATime = 900'000;
     return number > 0 ? number : -2 - id % kMostAtATime;
   }
   double Existence() const { return Sigmoid(log_odds) * Sigmoid(ThingLogOdds()); }
   // That it is no crest, which looks like a thing for as long as it lives. Crests are low, run, and come up in water that was seen to be empty; none
-  // of this says anything of what has lived longer than they do. Fitted: logistic regression; what came up counts in full (DECISIONS.md).
+  // of these facts counts for a track that has lived longer than a crest does. Fitted: logistic regression; the log odds of coming up count in full
+  // (DECISIONS.md).
   double NoCrestLogOdds() const {
     constexpr double kHighM = 1.0;       // higher than any crest
     constexpr double kLowM = 0.5;        // as low as most
@@ -121,7 +122,7 @@ struct Followed {
   double Probability() const { return Existence() * Sigmoid(NoCrestLogOdds()); }
   double UnseenS(Utime now) const { return ToSeconds(now - seen); }
 
-  // Who it came of, or what became of it: the newest of many.
+  // Tracks that it came from or became: the newest of many.
   static void Relate(std::vector<std::pair<std::int64_t, Utime>>& relatives, std::int64_t other, Utime time) {
     constexpr std::size_t kMostRelatives = 100;
     if (relatives.size() == kMostRelatives) relatives.erase(relatives.begin());

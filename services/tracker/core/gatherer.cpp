@@ -132,7 +132,7 @@ std::vector<GatheredScan> Gatherer::AdvanceTo(Utime host_time) {
   std::vector<GatheredScan> released;
   host_time_ = host_time;
   for (auto& waiting : waiting_) {
-    // What came before host time was known, or before the host's clock was set back, begins to wait now.
+    // Scans that came before host time was known, or before the host's clock was set back, begin to wait now.
     waiting.arrival = std::min(waiting.arrival.value_or(host_time), host_time);
   }
   pose_arrival_ = std::min(pose_arrival_.value_or(host_time), host_time);
@@ -213,7 +213,7 @@ void Gatherer::ReleaseFront(bool is_given_up, std::vector<GatheredScan>& release
     input.own.reset();
   }
   input.sweep = SweepOf(obstacles.key);
-  // What stands in a part that is lost would count as not seen.
+  // Obstacles in a lost part would count as not seen.
   if (!obstacles.is_whole) input.sweep.reset();
   ++counts_["scans_released"];
   if (!input.sweep) ++counts_["scans_without_sight"];

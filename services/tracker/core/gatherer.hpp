@@ -1,4 +1,4 @@
-// Brings together what several channels say of one scan, and waits for what is still to come.
+// Brings together the messages of one scan from several channels, and waits for those still to come.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace lookout::tracker {
 
-/// Which scan: all that is computed of it carries both.
+/// Key of a scan: all its messages carry both.
 struct ScanKey {
   Utime time;  // first firing
   std::int64_t seq = 0;
@@ -68,7 +68,7 @@ struct ScanLabels {
   std::vector<std::int16_t> piece;  // the same; empty: each segment is one piece
 };
 
-/// A scan with all that came of it.
+/// A scan with all its messages.
 struct GatheredScan {
   ScanInput input;
   std::int64_t raw_seq = 0;
@@ -98,14 +98,14 @@ class Gatherer {
   /// @param timeout  live only: how long a scan waits, by the host's clock
   Gatherer(const Sources& sources, std::chrono::microseconds timeout) : sources_(sources), timeout_(timeout) {}
 
-  /// Each of these returns what can go on now.
+  /// Each of these returns the scans that can go on now.
   std::vector<GatheredScan> Add(ScanObstacles obstacles);
   std::vector<GatheredScan> Add(ScanBeams beams);
   std::vector<GatheredScan> Add(ScanLabels labels);
   /// @param is_new_run  navigator began anew with this one
   std::vector<GatheredScan> Add(const Pose& pose, bool is_new_run);
 
-  /// Live only: what has waited too long goes on with what is there, and what waits for POSE alone while that has not come for so long.
+  /// Live only: a scan that has waited too long goes on with what is there, and one that waits for POSE alone while POSE has not come for so long.
   std::vector<GatheredScan> AdvanceTo(Utime host_time);
 
   /// End of input.
@@ -126,7 +126,7 @@ class Gatherer {
    public:
     void Add(Part part);
     Arrival Of(const ScanKey& key) const;
-    // What came of this scan, if it is whole; nothing that came before is of use any more.
+    // The message of this scan, if it is whole; earlier ones are of no use any more.
     std::optional<Part> Take(const ScanKey& key);
 
    private:
@@ -163,7 +163,7 @@ class Gatherer {
   std::deque<Waiting> waiting_;
   std::optional<ScanKey> newest_;  // of OBSTACLES
   bool has_begun_ = false;
-  bool is_anew_ = false;  // what has not been told to a scan yet
+  bool is_anew_ = false;  // not told to a scan yet
   std::optional<Utime> host_time_;
   std::optional<Utime> pose_arrival_;  // host time of the last, or from when on it is known
   std::optional<Utime> last_timeout_;

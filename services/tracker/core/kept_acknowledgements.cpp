@@ -34,7 +34,7 @@ void KeptAcknowledgements::Keep(Utime time, const Datum& datum, std::span<const 
   for (const auto& alert : alerts) {
     if (alert.state != AlertState::kAcknowledged) continue;
     Kept kept{time, datum, alert.level, std::nullopt, Eigen::Vector2d::Zero(), alert.distance_m, alert.bearing_rad};
-    if (alert.thing == kUnnamed) continue;  // nobody knows what it was
+    if (alert.thing == kUnnamed) continue;  // nobody knows which thing it was
     if (alert.thing != kLandTrack) {
       const auto* track = FindTrack(tracks, alert.nearest_track);
       if (track == nullptr) continue;

@@ -21,12 +21,12 @@ namespace lookout::tracker {
 /// of land where one of land was, on that side of the boat (60 deg) and no nearer than half as far.
 class KeptAcknowledgements {
  public:
-  /// Sources: a track is confirmed again within 2 s and its alert comes up within one more; what is 5 m off may be another boat.
+  /// Sources: a track is confirmed again within 2 s and its alert comes up within one more; a track 5 m off may be another boat.
   static constexpr std::chrono::seconds kKeptFor{10};
   static constexpr double kSamePlaceM = 5.0;
 
-  /// Before the tracks are forgotten; or at the begin, what the process before left. What was kept before stays: it may not have been raised again
-  /// yet. What is kept of the same thing, the nearest, is replaced.
+  /// Must be called before the tracks are forgotten; or at the begin, with those that the process before left. Earlier kept ones stay: they may not
+  /// have been raised again yet. The nearest kept one of the same thing is replaced.
   void Keep(Utime time, const Datum& datum, std::span<const Alert> alerts, std::span<const Track> tracks);
 
   /// With a scan: acknowledgements for the alerts that came up since. Each that is kept is of one alert, the nearest that came up: once at its level,

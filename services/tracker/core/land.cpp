@@ -15,7 +15,7 @@ constexpr int kPerhapsAgainst = 3;
 constexpr int kLookedThrough = 8;
 constexpr int kMost = 60;
 constexpr int kIsLand = 12;
-// What stands low is hardly ever looked through, but over.
+// Beams seldom pass through low land, but over it.
 constexpr double kLeastTopM = 0.3;
 constexpr double kBelowTopM = 0.2;
 
@@ -138,7 +138,7 @@ std::vector<Eigen::Vector2d> LandMemory::Waterline(const Eigen::Vector2d& near_m
 
 void LandMemory::Forget(const Eigen::Vector2d& own_m) {
   if (tiles_.size() <= kMostTiles) return;
-  // A quarter at once, so that it is rare.
+  // A quarter at once, so that this is rare.
   std::vector<std::pair<double, Cell>> by_distance;
   for (const auto& [tile, evidence] : tiles_) {
     by_distance.emplace_back((Eigen::Vector2d(tile.first + 0.5, tile.second + 0.5) * kTileCells * kCellM - own_m).squaredNorm(), tile);

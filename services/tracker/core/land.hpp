@@ -1,4 +1,4 @@
-// What is land, remembered on the map.
+// Land, remembered on the map.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +15,8 @@
 namespace lookout::tracker {
 
 /// Cells of half a metre that hold evidence of land: more with each scan that sees land there, less with each that sees something else, and less
-/// where beams pass below the height of what was there. So one scan that takes a boat for land does not make it land, nor one that takes a bank for a
-/// boat a boat; and what left leaves no land behind.
+/// where beams pass below the height of earlier returns. So one scan that takes a boat for land does not make it land, nor one that takes a bank for
+/// a boat a boat; and a thing that left leaves no land behind.
 ///
 /// Memory: 2 kB for each tile of 16 m x 16 m, at most kMostTiles and those that one scan adds (8 MB); beyond, the farthest from the boat are
 /// forgotten.

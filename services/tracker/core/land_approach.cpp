@@ -24,7 +24,7 @@ constexpr double kLikely = 0.5;
 // A boat that holds its distance to a quay comes no nearer than that.
 constexpr double kMuchNearer = 0.5;
 constexpr double kLeastLimitM = 0.5;
-// Land is no row of points: what lies so near to a place is one face with it.
+// Land is no row of points: places so near to a place are one face with it.
 constexpr double kFaceM = 1.5;
 constexpr int kArcSteps = 4;
 

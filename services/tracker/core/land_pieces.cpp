@@ -82,7 +82,7 @@ bool LandPieces::HasMoved(const Piece& piece, const Seen& seen, bool is_whole, c
     }
   }
   if (num_left >= kLeastPlaces && num_left >= kLeastShare * (num_left + num_kept)) return true;
-  // At a slant a wall is near to what lies before it: the other proof counts for what moves by itself only, and as a whole.
+  // At a slant a wall is near to the water before it: that proof counts only for a piece that moves by itself, as a whole.
   if (!is_whole || !piece.body.IsMoving(kPieceMoving)) return false;
   int num_come = 0;
   int num_free = 0;

@@ -14,9 +14,9 @@
 
 namespace lookout::tracker {
 
-/// A barge under way looks like a quay. What may be one is followed here, unpublished; it is no land once it has left a place where it stood, so that
-/// beams pass there, or come where beams had passed before. A part of a quay or a bank, cut otherwise in each scan, seems to move, but leaves nothing
-/// free and comes to nothing that was. Memory: at most kMostPieces of 1 kB.
+/// A barge under way looks like a quay. A piece that may be one is followed here, unpublished; it is no land once it has left a place where it stood,
+/// so that beams pass there, or comes where beams had passed before. A part of a quay or a bank, cut otherwise in each scan, seems to move, but
+/// leaves nothing free and comes to no free place. Memory: at most kMostPieces of 1 kB.
 class LandPieces {
  public:
   static constexpr std::size_t kMostPieces = 64;

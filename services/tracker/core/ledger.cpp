@@ -23,7 +23,7 @@ constexpr std::size_t kManyPieces = 1000;
 constexpr std::size_t kReturnsOfMany = 3;
 constexpr double kLandVote = 0.3;       // above it a piece is land
 constexpr float kLandEvidence = 2.0F;   // that two pieces of land beside each other are one
-constexpr std::int32_t kOldScans = 10;  // seen there for so long, it is no part of what moves past it
+constexpr std::int32_t kOldScans = 10;  // a thing seen there for so long is no part of one that moves past it
 constexpr std::int64_t kMemoryScans = 200;
 
 std::size_t IndexOf(std::int32_t number) { return static_cast<std::size_t>(number); }

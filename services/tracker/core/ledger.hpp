@@ -1,4 +1,4 @@
-// What the scans so far say of neighbouring places: that they are of one thing, or of two, and that they are land.
+// Votes of earlier scans on neighbouring places: that they are of one thing, or of two, and that they are land.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,23 +12,23 @@
 
 namespace lookout::tracker {
 
-/// The segmenter decides anew in each scan which pieces are one thing, and what it gets wrong flickers. The ledger keeps its decisions by place: for
-/// each pair of neighbouring cells the mean vote of the scans that saw both, the last ones most. What is one thing in a scan is then a sum of
-/// evidence: over all pairs of cells of two pieces, the mean vote, which counts less with distance and more with returns. Two pieces of land touch
-/// weakly, so that they are land counts as evidence, too.
+/// The segmenter decides anew in each scan which pieces are one thing, and its errors flicker. The ledger keeps its decisions by place: for each pair
+/// of neighbouring cells the mean vote of the scans that saw both, the last ones most. Whether two pieces are one thing in a scan is then a sum of
+/// evidence: over all their pairs of cells, the mean vote, which counts less with distance and more with returns. Two pieces of land touch weakly, so
+/// being land counts as evidence, too.
 ///
-/// What stands is remembered on the earth, what moves in a frame that moves and turns with it. Between two frames the scan alone decides; but what
-/// was there for a while is no part of what moves past it.
+/// Standing things are remembered on the earth, moving ones in a frame that moves and turns with them. Between two frames the scan alone decides; but
+/// a thing that was there for a while is no part of one that moves past it.
 class Ledger {
  public:
-  /// One piece of the scan (segments_t): what the segmenter does not cut.
+  /// One piece of the scan (segments_t), which the segmenter does not cut.
   struct Piece {
     std::int32_t segment = 0;                   // any number; the same for pieces of one segment
     bool is_land = false;                       // as its segment is called in this scan
     std::int32_t frame = 0;                     // index of the frames
     std::span<const Eigen::Vector2d> places_m;  // its returns on the map, at least one
   };
-  /// Where places are remembered.
+  /// A frame in which places are remembered.
   struct Frame {
     std::int64_t id = 0;                                            // 0: the earth; each other thing that moves has its own, not used again
     Eigen::Isometry2d T_frame_map = Eigen::Isometry2d::Identity();  // now
@@ -38,14 +38,14 @@ class Ledger {
     std::vector<double> land;            // [groups] mean vote that it is land, -1 to 1
   };
 
-  /// Takes note of a scan, and says what is one thing in it. What has not been seen in the last 200 scans is forgotten.
+  /// Takes the votes of a scan, and decides which of its pieces are one thing. Cells that have not been seen in the last 200 scans are forgotten.
   ///
   /// @param frames  the first is the earth
   /// @return until the next call
   /// Cost: proportional to the pairs of cells with returns that are 2.5 m apart at most; figures in the bench. Memory: VoteGrid.
   const Groups& Divide(std::span<const Piece> pieces, std::span<const Frame> frames);
 
-  /// Of the last call's groups: what is left between two of them, 0 or below; 0 where nothing was measured of them.
+  /// Of the last call's groups: the evidence between two of them, 0 or below; 0 where nothing was measured between them.
   float EvidenceBetween(std::int32_t one, std::int32_t other) const { return between_.Find(one, other); }
 
   void Clear();

@@ -1,4 +1,4 @@
-// How near is too near: what the config says, what a skipper has set, and in harbour what the own speed leaves.
+// How near is too near: limits of the config, limits that a skipper has set, and in harbour limits by the own speed.
 #pragma once
 
 #include "common/core/guard_sector.hpp"
@@ -29,8 +29,8 @@ struct Limits {
   double cpa_limit_m = 0.0;
 };
 
-/// In harbour both shrink with the own speed, and never grow beyond what is set: the zone to own_vessel, the way that the boat goes before it stops
-/// and a margin; the closest approach to half of that way. Where the speed is not known neither shrinks.
+/// In harbour both shrink with the own speed, and never grow beyond the set limits: the zone to own_vessel, the way that the boat goes before it
+/// stops and a margin; the closest approach to half of that way. Where the speed is not known neither shrinks.
 /// @param settings  NaN: as the config says; its mode counts. A sector of 0 to 360 deg, or of none, is all round
 /// @param own_mps   NaN: not known
 Limits LimitsOf(const LimitParams& params, const Settings& settings, double own_mps, const OwnAbility& ability);

@@ -1,4 +1,4 @@
-// From what is known after a scan to the alerts: what is a danger, how urgent it is, which alert sounds.
+// From the picture after a scan to the alerts: dangers, their urgency, and the alert that sounds.
 #pragma once
 
 #include <cstdint>
@@ -60,10 +60,10 @@ class LookOut {
   /// As returned by the last Update.
   const std::vector<Alert>& alerts() const { return told_; }
   const Names& names() const { return names_; }
-  /// Orders to name what is no track.
+  /// Orders to name an id that is no track.
   std::int64_t num_names_of_no_track() const { return num_names_of_no_track_; }
   const Limits& limits() const { return limits_; }
-  /// The guard zone as it is set, which does not shrink in harbour: of it somebody should see all.
+  /// The guard zone as it is set, which does not shrink in harbour: somebody should see all of it.
   GuardZoneParams WholeZone() const;
   std::int64_t sounding() const { return sounding_; }
   std::optional<Utime> silenced_until() const { return sound_.silenced_until(); }

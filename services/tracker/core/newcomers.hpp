@@ -1,4 +1,4 @@
-// What is seen in the guard zone and has no track: for how long it has been at its place.
+// Things in the guard zone without a track: for how long each has been at its place.
 #pragma once
 
 #include <chrono>
@@ -12,10 +12,10 @@
 
 namespace lookout::tracker {
 
-/// From scan to scan the nearest places are the same thing. Drops and strays are here now and there now; what stays is something.
+/// From scan to scan the nearest places are the same thing. Drops and strays change their places; a thing stays.
 class Newcomers {
  public:
-  /// It goes by at most 10 m/s, and its outline changes by less than a metre.
+  /// A thing goes by at most 10 m/s, and its outline changes by less than a metre.
   static constexpr double kFollowedM = 1.5;
   /// A boat in waves loses a low thing for some scans.
   static constexpr std::chrono::milliseconds kKeptFor{400};
@@ -25,7 +25,7 @@ class Newcomers {
   static constexpr std::size_t kMostKnown = 400;
 
   /// One scan. Cost: at most kMostPlaces x kMostKnown distances, sorted.
-  /// @return [places] seconds since something was seen there first; 0 of what is not followed
+  /// @return [places] seconds since something was seen there first; 0 of a place that is not followed
   std::vector<double> Update(Utime time, std::span<const DangerPlace> places);
 
   /// Places of scans, and known ones, that were dropped because there were too many.

@@ -1,4 +1,4 @@
-// What a skipper tells the look-out to do.
+// An order of a skipper to the look-out.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Settings {
 };
 
 struct Order {
-  Utime time;  // host time of who sent it
+  Utime time;  // host time of the sender
   std::int64_t seq = 0;
   std::string source;
   OrderKind kind = OrderKind::kSilence;

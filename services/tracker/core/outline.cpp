@@ -19,13 +19,13 @@ constexpr double kRoundingM = 1e-9;
 // Corners nearer than this are one: no lidar tells them apart.
 constexpr double kOneCornerM = 1e-6;
 
-// What lies not farther than `offset_m` along `normal`, a unit vector.
+// The half-plane not farther than `offset_m` along `normal`, a unit vector.
 struct HalfPlane {
   Eigen::Vector2d normal;
   double offset_m;
 };
 
-// What of a polygon lies in a half-plane. Source: I. Sutherland and G. Hodgman, "Reentrant Polygon Clipping", 1974.
+// The part of a polygon in a half-plane. Source: I. Sutherland and G. Hodgman, "Reentrant Polygon Clipping", 1974.
 void Clip(const HalfPlane& side, std::vector<Eigen::Vector2d>& polygon, std::vector<Eigen::Vector2d>& scratch) {
   const auto beyond_m = [&side](const Eigen::Vector2d& corner) { return side.normal.dot(corner) - side.offset_m; };
   scratch.clear();
@@ -47,7 +47,7 @@ void DropTwins(std::vector<Eigen::Vector2d>& polygon) {
   while (polygon.size() > 1 && is_twin(polygon.front(), polygon.back())) polygon.pop_back();
 }
 
-// What lies within all reaches, each farther by `slack_m`.
+// The polygon within all reaches, each farther by `slack_m`.
 std::vector<Eigen::Vector2d> Within(const Support& support, double slack_m) {
   const auto reach = [&](std::size_t direction) { return support[direction] + slack_m; };
   const double west = -reach(8);

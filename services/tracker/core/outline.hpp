@@ -28,8 +28,8 @@ using Support = std::array<double, kDirections>;
 /// @param corners_m  at least one, in any order
 Support SupportOf(std::span<const Eigen::Vector2d> corners_m);
 
-/// What lies within all of them. Where they contradict each other, each gives way by the same distance, by no more than it takes: what is left is
-/// then a line or a point midway.
+/// The polygon within all of them. Where they contradict each other, each gives way by the same distance, by no more than it takes: a line or a point
+/// midway is left.
 /// @return at least one corner, at most 16, none nearer than 1 um to its neighbour
 std::vector<Eigen::Vector2d> Polygon(const Support& support);
 
@@ -53,7 +53,7 @@ Gap GapOf(std::span<const Eigen::Vector2d> first, std::span<const Eigen::Vector2
 /// Area, signed: positive counter-clockwise.
 double AreaOf(std::span<const Eigen::Vector2d> polygon);
 
-/// What both share: a polygon, a line, a point; empty where there is nothing.
+/// The common part of both: a polygon, a line, a point; empty where there is none.
 std::vector<Eigen::Vector2d> Intersection(std::span<const Eigen::Vector2d> first, std::span<const Eigen::Vector2d> second);
 
 }  // namespace lookout::tracker

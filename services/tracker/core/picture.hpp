@@ -1,4 +1,4 @@
-// What is known after a scan, as it is published.
+// The picture after a scan, as it is published.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ inline constexpr std::int64_t kNoTrack = -1;  // of a piece
 enum class TrackStatus : std::int32_t { kTentative = 1, kConfirmed = 2, kCoasting = 3, kLost = 4 };
 enum class TrackKind : std::int32_t { kObstacle = 0, kBuoy = 1, kBoat = 2, kStructure = 3, kUnknown = 4 };
 
-/// One track after a scan, propagated to its end; as in track_t, which says what the members mean.
+/// One track after a scan, propagated to its end; track_t says what the members mean.
 struct Track {
   std::int64_t id = 0;  // from 1 up in the order in which they were confirmed; below -1 of a tentative one
   TrackStatus status = TrackStatus::kTentative;
@@ -52,13 +52,13 @@ struct Track {
   Encounter encounter = Encounter::kNone;
 };
 
-/// What is known after a scan.
+/// The picture after a scan.
 struct Picture {
   bool is_sight_known = false;
   std::vector<Track> tracks;  // by id
   std::vector<std::int32_t> land_segment_ids;
-  /// What each piece of the scan is of, by its number less one: the id of a track, 0 land, kNoTrack nothing that is followed. Of a Sweep without
-  /// pieces by the id of its segment less one.
+  /// The track of each piece of the scan, by its number less one: the id of a track, 0 land, kNoTrack a piece that is not followed. Of a Sweep
+  /// without pieces by the id of its segment less one.
   std::vector<std::int64_t> track_of_piece;
   std::vector<Eigen::Vector2d> waterline_m;  // remembered land with water before it; told every tenth scan, else empty
   bool is_waterline_told = false;

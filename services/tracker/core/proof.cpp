@@ -55,7 +55,7 @@ void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2
     course.is_proven =
         gets_there && (!course.is_beside || gone_m >= kPassesM || (course.has_left && !IsBesideWhatStands(track, tracks, shore_m, kTouchM)));
     if (course.is_proven || seen_s <= 2.0 * kMostS) continue;
-    // It swung at its mooring; how it runs now is another course. What leaves slowly goes on from where it began.
+    // It swung at its mooring; its present run is another course. A track that leaves slowly goes on from where it began.
     if (course.is_beside) {
       course.begin = track.seen;
       course.begin_m = track.position_m;

@@ -12,13 +12,13 @@
 namespace lookout::tracker {
 
 /// Where one of two pieces of a hull or a crest behind another is taken for the thing itself, it seems to run, as fast as both are apart, and is gone
-/// a second later. A boat gets where its course says that it gets. So what moves is proven when it was seen for as long as a boat needs to gain that
-/// speed, a second at least, and has gone half of the way by then. What has not shown itself for 6 s begins anew. What seems to stand for
-/// less than kPauseS goes on.
+/// a second later. A boat gets where its course leads. So a moving track is proven when it was seen for as long as a boat needs to gain that speed, a
+/// second at least, and has gone half of the way by then. A track that has not shown itself for 6 s begins anew. One that seems to stand for less
+/// than kPauseS goes on.
 ///
-/// What began to move within kBesideM of something that stands (a quay, a boat at its berth) is, most often, a piece of that: as the own boat moves,
-/// now one end of it is seen and now the other. It is proven, slow or fast, when it has besides gone kLeavesM and is off by kTouchM, or has gone
-/// kPassesM; it may be acted on before that, but not before it has gone kLeavesM.
+/// A track that began to move within kBesideM of something that stands (a quay, a boat at its berth) is, most often, a piece of that: as the own boat
+/// moves, now one end of it is seen and now the other. It is proven, slow or fast, when it has besides gone kLeavesM and is off by kTouchM, or has
+/// gone kPassesM; it may be acted on before that, but not before it has gone kLeavesM.
 class Proof {
  public:
   static constexpr double kLeastS = 1.0;
@@ -43,11 +43,11 @@ class Proof {
   void Clear() { courses_.clear(); }
 
   bool IsProven(const Track& track) const;
-  /// Whether it seems to move, and may be a piece of what stands beside it all the same.
+  /// Whether it seems to move, and may still be a piece of something that stands beside it.
   bool MayBePiece(std::int64_t track_id) const;
   /// Seen for so short that it may be nothing, or of another size or speed.
   static bool IsYoung(const Track& track, Utime time) { return ToSeconds(time - track.first) < kYoungS; }
-  /// Seen for longer than most crests live, and likelier a thing than one: what is tentative still counts as if it were confirmed.
+  /// Seen for longer than most crests live, and likelier a thing than one: a tentative track then counts as if it were confirmed.
   static bool Lasts(const Track& track, Utime time) {
     return track.status == TrackStatus::kTentative && track.existence_probability >= kLikely && ToSeconds(time - track.first) >= kMostS;
   }

@@ -24,9 +24,9 @@ TrackKind KindOf(const Track& track, bool is_moving) {
   return TrackKind::kObstacle;
 }
 
-// Of a track as it is published: where it lies from the own boat, and what it will do.
+// Of a track as it is published: its place from the own boat, and its closest approach.
 void Encountered(Track& track, const Pose& own, const Moving& self, const TrackerParams& params) {
-  constexpr double kStandingMps = 0.05;                 // deviation of what stands: a mooring lets it swing
+  constexpr double kStandingMps = 0.05;                 // deviation of a standing thing: a mooring lets it swing
   constexpr double kTurnsForSureRadps = DegToRad(8.0);  // two deviations of a turn rate that is published
   const auto [sine, cosine] = SinCosOf(own.heading_rad);
   const Eigen::Vector2d forward(sine, cosine);

@@ -1,4 +1,4 @@
-// From what is followed to what is published.
+// From followed tracks to the published picture.
 #pragma once
 
 #include <deque>
@@ -17,8 +17,8 @@ inline constexpr double kOwnVelocitySdMps = 0.15;  // where POSE is placed
 /// The own boat, as closest approach sees it.
 Moving SelfOf(const Pose& own, double turn_rate_radps, const TrackerParams& params);
 
-/// By id: confirmed tracks, ended ones among them (lost), and tentative ones that have a body. Notes in `tracks` who overtakes, and forgets relatives
-/// of long ago.
+/// By id: confirmed tracks, ended ones among them (lost), and tentative ones that have a body. Notes overtaking in `tracks`, and forgets relatives of
+/// long ago.
 /// @param self  the own boat; nullopt: its pose is not known
 std::vector<Track> Published(const ScanInput& scan, const TrackerParams& params, const std::optional<Moving>& self, std::deque<Followed>& tracks);
 

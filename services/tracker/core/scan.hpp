@@ -1,4 +1,4 @@
-// What the tracker takes of one scan. Values are valid: wire.cpp lets no others in.
+// The values of one scan that the tracker uses. They are valid: wire.cpp lets no others in.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -27,7 +27,7 @@ struct Seen {
   std::vector<Eigen::Vector2d> waterline_m;  // of land: open line
 };
 
-/// The beams of the scan: what was looked through. Column-major: ring fastest.
+/// The beams of the scan: which water was looked through. Column-major: ring fastest.
 struct Sweep {
   std::vector<float> elevation_rad;       // [rings] from the lowest up
   std::vector<float> azimuth_offset_rad;  // [rings]
@@ -40,7 +40,7 @@ struct Sweep {
 
 struct ScanInput {
   Utime time;      // first firing
-  Utime end_time;  // last shot: what states are propagated to
+  Utime end_time;  // last shot: states are propagated to it
   std::int64_t seq = 0;
   std::int32_t flags = 0;
   Datum datum;

@@ -1,4 +1,4 @@
-// What a live run did that its inputs do not tell: replay does the same.
+// Actions of a live run that its inputs do not tell: replay does the same.
 #pragma once
 
 #include <map>

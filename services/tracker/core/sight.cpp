@@ -76,7 +76,7 @@ Sight::Span Sight::ColumnsOf(std::span<const Eigen::Vector2d> outline_m) const {
     const Eigen::Vector3d place = pose.linear().transpose() * offset;
     return Atan2(-place.y(), place.x());
   };
-  // The boat turns while the head goes round: first by the pose of the middle, then by that of the column which it gives.
+  // The boat turns while the head goes round: first by the pose of the middle, then by the pose of the column that this gives.
   const int num_columns = static_cast<int>(column_.size());
   Eigen::Isometry3d pose = PoseAt(num_columns / 2);
   pose = PoseAt(std::min(ColumnAt(azimuth_of(middle, pose)), num_columns - 1));
@@ -145,7 +145,7 @@ bool Sight::Reaches(const Eigen::Vector2d& corner_m, double side_m) const {
 }
 
 bool Sight::IsFree(const Eigen::Vector2d& place_m, double top_m) const {
-  // What was there reached so far behind the place at most, where a beam passes it on a slant or the place is off.
+  // An object there reached so far behind the place at most, where a beam passes it on a slant or the place is off.
   constexpr double kBehindM = 1.5;
   constexpr double kMostBesideRad = 0.01;
   if (sweep_ == nullptr) return false;

@@ -1,4 +1,4 @@
-// What could have been seen: which beams of a scan would have met a thing, and what became of them.
+// Which beams of a scan would have met a thing, and where they ended.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -25,21 +25,21 @@ class Sight {
   /// @return false where the scan says nothing: no beams, or no poses
   bool Begin(const ScanInput& scan);
 
-  /// Of a thing that stands in the water, from the water up to `top_m`, with this outline on the map.
+  /// Look at a thing that stands in the water, from the water up to `top_m`, with this outline on the map.
   Look At(std::span<const Eigen::Vector2d> outline_m, double top_m) const;
 
-  /// Whether something nearer stands before what would be seen next to the ends of a seen outline.
+  /// Whether something nearer stands before the places next to the ends of a seen outline.
   Sides SidesOf(std::span<const Eigen::Vector2d> outline_m, double top_m) const;
 
   /// Whether a square on the map, from its lower left corner, is within reach of the beams.
   bool Reaches(const Eigen::Vector2d& corner_m, double side_m) const;
-  /// Whether beams passed a place, above the water and below `top_m`, and none of these ended at it: what they met is far behind, or nothing.
+  /// Whether beams passed a place, above the water and below `top_m`, and none of these ended at it: they met something far behind, or nothing.
   bool IsFree(const Eigen::Vector2d& place_m, double top_m) const;
 
   /// The lidar on the map, in the middle of the scan.
   Eigen::Vector2d from_m() const { return (start_.translation() + 0.5 * (end_.translation() - start_.translation())).head<2>(); }
 
-  /// The scan as it is, for who keeps it. The sweep is that of Begin: nullptr where the scan says nothing.
+  /// The scan as it is, for keeping. The sweep is that of Begin: nullptr where the scan says nothing.
   const Sweep* sweep() const { return sweep_; }
   const Eigen::Isometry3d& start() const { return start_; }  // T_map_lidar, z over the water
   const Eigen::Isometry3d& end() const { return end_; }

@@ -9,7 +9,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::int32_t kNothing = -1;
-constexpr std::int32_t kMostNumber = 65'535;  // labels have 16 bits: what has a greater one has no returns
+constexpr std::int32_t kMostNumber = 65'535;  // labels have 16 bits: a segment with a greater number has no returns
 
 struct PieceReturns {
   std::int32_t number = 0;
@@ -52,13 +52,13 @@ std::vector<PieceReturns> PiecesOf(const ScanInput& scan, const Sight& sight) {
   return pieces;
 }
 
-// A segment by itself, of which no return is known.
+// A segment by itself, without known returns.
 void AddSegment(const Seen& segment, Sightings& sightings) {
   SetAt(sightings.of_segment, segment.segment_id, static_cast<std::int32_t>(sightings.all.size()));
   sightings.all.push_back({.seen = segment, .places_m = segment.waterline_m.empty() ? segment.outline_m : segment.waterline_m});
 }
 
-// The earth, and what moves.
+// Frames of the votes: that of the earth, and those of moving things.
 std::vector<Ledger::Frame> FramesOf(const std::deque<Followed>& tracks, std::vector<const Followed*>& owners) {
   std::vector<Ledger::Frame> frames(1);
   for (const auto& track : tracks) {
@@ -69,7 +69,7 @@ std::vector<Ledger::Frame> FramesOf(const std::deque<Followed>& tracks, std::vec
   return frames;
 }
 
-// The frame of what moves in whose outline most of a piece lies.
+// The frame of the moving thing in whose outline most of a piece lies.
 std::int32_t FrameOf(const PieceReturns& piece, const std::vector<const Followed*>& owners) {
   constexpr double kBesideOutlineM = 0.3;
   for (std::size_t k = 0; k < owners.size(); ++k) {
@@ -84,7 +84,7 @@ std::int32_t FrameOf(const PieceReturns& piece, const std::vector<const Followed
   return 0;
 }
 
-// As the scan itself has it.
+// The groups of the scan itself: a group for each segment.
 Ledger::Groups GroupsOfSegments(const std::vector<Ledger::Piece>& pieces) {
   Ledger::Groups groups;
   std::map<std::int32_t, std::int32_t> group_of;
@@ -96,7 +96,7 @@ Ledger::Groups GroupsOfSegments(const std::vector<Ledger::Piece>& pieces) {
   return groups;
 }
 
-// What pieces of several segments, or not of all of one, look like together.
+// The pieces of a sighting, of several segments or of a part of one, as one segment.
 Seen Together(const ScanInput& scan, const std::map<std::size_t, std::size_t>& returns_of, const Sighting& sighting) {
   const auto most = std::ranges::max_element(returns_of, {}, [](const auto& one) { return one.second; })->first;
   Seen whole = scan.seen[most];

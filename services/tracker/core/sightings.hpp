@@ -1,4 +1,4 @@
-// What is seen in a scan, when the scans before are asked which of its pieces are one.
+// The sightings of a scan, once the earlier scans have decided which of its pieces are one.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace lookout::tracker {
 
-/// One thing that is seen, and what has become of it in this scan.
+/// One sighting, and its use in this scan.
 struct Sighting {
   enum class Use { kFree, kLand, kAssigned, kTaken, kLeftOut };
 
@@ -31,13 +31,13 @@ struct Sighting {
 struct Sightings {
   std::vector<Sighting> all;
   std::int32_t num_groups = 0;  // of the ledger: the first ones of all, in its order
-  // What pieces (by number less one) and segments (by id less one) are in: an index of all; of a segment in several that with most of its returns;
+  // The sighting of pieces (by number less one) and segments (by id less one), by index; of a segment in several the one with most of its returns;
   // -1: there is no such piece or segment, or it shows in second returns alone.
   std::vector<std::int32_t> of_piece;
   std::vector<std::int32_t> of_segment;
 };
 
-/// Asks the ledger. Where the scan has no labels, its segments are what is seen.
+/// Asks the ledger. Where the scan has no labels, its segments are the sightings.
 /// @param tracks  predicted to the scan
 /// @param ledger  nullptr: segments stay as the scan has them
 Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger* ledger);

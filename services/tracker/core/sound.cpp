@@ -10,7 +10,7 @@ void Sound::Silence(Utime time) {
 }
 
 std::int64_t Sound::Update(Utime time, std::span<const Alert> alerts) {
-  // A time that goes back ends it, too.
+  // Silence also ends where time goes back.
   if (silenced_until_ && (time >= *silenced_until_ || time < *silenced_until_ - kSilence)) {
     silenced_until_.reset();
     for (auto& [id, heard] : heard_) heard.is_silenced = false;

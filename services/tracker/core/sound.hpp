@@ -12,9 +12,9 @@
 
 namespace lookout::tracker {
 
-/// One sound: the gravest that is active. A warning sounds until somebody takes note, a caution once. A warning that becomes a caution does not sound
-/// again, a caution that becomes a warning does. Silence is no taking note: alerts stay as they are, and what comes up as a warning, or becomes one,
-/// meanwhile sounds all the same.
+/// One sound: the gravest active alert. A warning sounds until it is acknowledged, a caution once. A warning that becomes a caution does not sound
+/// again, a caution that becomes a warning does. Silence is no acknowledgement: alerts stay as they are, and an alert that comes up as a warning, or
+/// becomes one, meanwhile sounds all the same.
 class Sound {
  public:
   static constexpr std::chrono::seconds kSilence{30};

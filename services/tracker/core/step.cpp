@@ -83,7 +83,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   ConfirmWhereLikely(track, i);
 }
 
-// From what was seen to the segments and pieces that it is made of.
+// From a sighting to the segments and pieces that it consists of.
 void Step::Label() {
   std::vector<std::int64_t> track_of(sightings_.size(), kNoTrack);
   for (const std::int32_t number : land_ids_) track_of[static_cast<std::size_t>(number - 1)] = 0;

@@ -1,4 +1,4 @@
-// One scan at work: what it changes of what is known.
+// The work of one scan on the tracks.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ inline constexpr std::size_t kMostTracks = 8000;  // 20 MB; rain has 1500
 
 using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower first
 
-/// What is known between scans.
+/// The state between scans.
 struct Known {
   Sight sight;
   Ledger ledger = {};
@@ -53,14 +53,14 @@ inline bool IsWithin(const Eigen::Vector2d& place_m, const Eigen::Vector2d& midd
   return (place_m - middle_m).norm() <= radius_m + kOfRoundingM;
 }
 
-/// Run it once; what it found is then to be taken. Its stages are files: step_associate, step_exist, step_move, step_land, step_merge, step_settle.
+/// Run it once; its results are then to be taken. Its stages are files: step_associate, step_exist, step_move, step_land, step_merge, step_settle.
 class Step {
  public:
   Step(const TrackerParams& params, const ScanInput& scan, Known& known, double dt_s) : params_(params), scan_(scan), known_(known), dt_s_(dt_s) {}
 
   void Run();
 
-  /// All but tracks and what follows of them.
+  /// The picture without tracks and their consequences.
   Picture TakePicture();
 
  private:

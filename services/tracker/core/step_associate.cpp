@@ -1,4 +1,4 @@
-// Who is who.
+// Association of segments with tracks.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr double kLongestScanS = 0.2;
 }  // namespace
 
 double Step::CostOf(const Followed& track, std::size_t i) {
-  constexpr double kWidestGateM = 12.5;  // of what follows; most pairs are farther apart
+  constexpr double kWidestGateM = 12.5;  // of the gates below; most pairs are farther apart
   if ((sightings_[i].middle_m - track.middle_m).norm() > kWidestGateM + track.radius_m + sightings_[i].radius_m) return kMostCost;
   const auto& seen = sightings_[i].seen;
   const Eigen::Matrix4d covariance = track.body->covariance();
@@ -27,7 +27,7 @@ double Step::CostOf(const Followed& track, std::size_t i) {
   const double noise = std::sqrt(0.5 * seen.covariance_relative_m2.trace());
   const double gate = 0.5 + 2.0 * sd + std::min(3.0 * std::max(0.0, noise - 0.3), 6.0);
   if ((sightings_[i].middle_m - track.middle_m).norm() > gate + track.radius_m + sightings_[i].radius_m) return kMostCost;
-  const double young = track.is_confirmed ? 0.0 : kYoungCost;  // what is known comes before what came up in it
+  const double young = track.is_confirmed ? 0.0 : kYoungCost;  // a known track comes before one that came up in it
   if (params_.without.outlines) return (sightings_[i].middle_m - track.middle_m).norm() / gate + young;
   const double gap = GapOf(track.outline_m, seen.outline_m).distance_m;
   if (gap > gate) return kMostCost;
@@ -36,13 +36,13 @@ double Step::CostOf(const Followed& track, std::size_t i) {
   const auto both = Intersection(track.outline_m, seen.outline_m);
   const double overlap = both.empty() ? 0.0 : std::min(1.0, std::max(AreaOf(both), 0.1) / std::min(area_track, area_seen));
   const auto shift = track.body->ShiftOf(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, sightings_[i].range_m);
-  // Of so many like it that are clutter one lies there by chance, as a drop of rain in the outline of a boat.
+  // Mean number of such pieces of clutter within the gate, as drops of rain in the outline of a boat.
   const double chance = known_.clutter.DensityAt(ToVessel(sightings_[i].middle_m), seen.num_returns) * (area_track + 4.0 * gate * gate);
   return Log(1.0 + chance) + 0.1 * std::min(shift.off, 30.0) + 0.1 * std::min(shift.misfit, 20.0) + (1.0 - overlap) +
          0.1 * std::abs(Log(area_seen / area_track)) + young;
 }
 
-// Computed once for a segment, where it is asked for.
+// Computed once for a segment, on demand.
 const Sides& Step::SidesOf(std::size_t i) {
   auto& sighting = sightings_[i];
   if (!sighting.sides) {
@@ -86,7 +86,7 @@ bool Step::AreTwo(std::size_t one, std::size_t other) const {
   return first < num_groups_ && second < num_groups_ && known_.ledger.EvidenceBetween(first, second) < 0.0F;
 }
 
-// A thing may come in several segments. What nothing else is known by, and lies in the outline of a track, is of it.
+// A thing may come in several segments. A segment that no other track takes, in the outline of a track, belongs to it.
 void Step::HitWhole(Followed& track, std::size_t i) {
   std::vector<std::size_t> others;
   const auto around = RectangleAround(track.outline_m);
@@ -132,7 +132,7 @@ void Step::TakeNearest(std::vector<Near>& pairs, const Take& take) {
   }
 }
 
-// What is not yet likely takes the nearest of the rest.
+// A track that is not yet likely takes the nearest of the rest.
 void Step::AssignRest() {
   std::vector<std::size_t> by_east;
   for (std::size_t i = 0; i < sightings_.size(); ++i) {
@@ -159,7 +159,7 @@ void Step::AssignRest() {
   });
 }
 
-// What is seen round a track and in it: of a thing rather than of land.
+// The segment around a track and in it: of a thing rather than of land.
 std::optional<std::size_t> Step::SightingAround(const Followed& track) const {
   constexpr double kLeastArea = 0.05;
   constexpr double kShare = 0.5;
@@ -180,7 +180,7 @@ std::optional<std::size_t> Step::SightingAround(const Followed& track) const {
   return found;
 }
 
-// Tracks that lie in what another is seen by: a boat that a dock, a bank or another boat was merged with in this scan.
+// Tracks inside of another track's segment: a boat that was merged with a dock, a bank or another boat in this scan.
 void Step::FindInside() {
   for (auto& track : known_.tracks) {
     if (track.is_seen_now || !track.body) continue;

@@ -1,4 +1,4 @@
-// What is there.
+// Existence of tracks.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::size_t kLooksKept = 15;
-constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have been seen
+constexpr double kDetectionUnknown = 0.5;  // where nobody knows which water was looked through
 constexpr double kMostDetection = 0.95;
 constexpr double kGreatestExistence = 6.0;
 constexpr double kLeastExistence = -6.0;
@@ -41,9 +41,9 @@ void Step::Look() {
     }
     const auto look = known_.sight.At(track.outline_m, track.top_m);
     const double share = track.beams_met / track.beams_open;
-    // Of so many beams that each would come back with this share; not all of them by themselves.
+    // Probability that none of the beams comes back, each with this share; at most 20 count, as they are not independent.
     double none = 1.0;
-    // What ended in it was something there, if not by itself.
+    // Beams that ended in the outline met something there, if not the track's own segment.
     const double num_empty = look.num_open - look.num_met;
     for (int i = 0; i < std::min(20, static_cast<int>(std::lround(num_empty))); ++i) none *= 1.0 - share;
     track.is_met = look.num_met > 0.5 * look.num_open;
@@ -51,7 +51,7 @@ void Step::Look() {
   }
 }
 
-// That something is there: it is seen as near to where it was expected as its place is known, against clutter there.
+// Evidence of existence: the thing is seen near its predicted place, by the deviation of that place, against clutter there.
 void Step::Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen::Vector2d& expected_m) {
   const auto& sighting = sightings_[i];
   const double sd = std::max(track.body ? 0.3 : 0.5, std::sqrt(0.5 * seen.covariance_relative_m2.trace()));
@@ -62,7 +62,7 @@ void Step::Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen
   track.log_odds += Log(1.0 - detection + detection * density / clutter);
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
   const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
-  // Of what is known for sure, a way behind something else is no unsteadiness.
+  // The step of a confirmed track since its last sighting is spread over the scans between: a hidden track is not unsteady.
   const double scans = track.is_confirmed ? std::max(1.0, ToSeconds(scan_.end_time - track.seen) / std::max(dt_s_, 0.01)) : 1.0;
   track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm() / scans);
   if (!track.is_confirmed && IsAlone(track, i)) ++track.num_alone;
@@ -78,8 +78,8 @@ void Step::Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen
 
 void Step::Miss(Followed& track) {
   if (track.detection <= 0.0) return;                                      // it could not have been seen
-  if (!is_sight_known_ && known_.had_sight && track.is_confirmed) return;  // what was looked through is lost: nobody knows
-  // What hides a known thing for a scan (a wave, a roll of the boat) hides it for a while.
+  if (!is_sight_known_ && known_.had_sight && track.is_confirmed) return;  // the beams are lost: nobody knows
+  // A wave or a roll of the boat that hides a known thing for a scan hides it for a while.
   const double known = std::min(1.0, track.num_hits / kMissHits);
   const double weight = 1.0 - known * (1.0 - std::min(1.0, dt_s_ / kMissS));
   track.log_odds = std::max(kLeastExistence, track.log_odds + weight * Log(1.0 - track.detection));
@@ -120,8 +120,8 @@ bool Step::IsAlone(const Followed& track, std::size_t i) const {
   });
 }
 
-// How the water was watched in which it came up; again where it turns out to be higher. Nothing comes up beside where a known thing was lost: that is
-// the thing.
+// Whether the water was watched in which the track came up; asked again where it turns out to be higher. Nothing comes up beside the place where a
+// known thing was lost: that is the thing.
 void Step::AskWatched(Followed& track) const {
   constexpr double kHigherM = 0.05;
   constexpr double kBesideLostM = 2.0;
@@ -139,7 +139,7 @@ void Step::Begin() {
   for (auto& track : known_.tracks) {
     if (track.is_confirmed && !track.is_ended) confirmed.push_back(&track);
   }
-  // Where there are too many, what is sure comes first.
+  // Where there are too many, sure ones come first.
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < sightings_.size(); ++i) {
     if (sightings_[i].use == Sighting::Use::kFree) order.push_back(i);

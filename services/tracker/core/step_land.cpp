@@ -1,4 +1,4 @@
-// What a scan has to do with land.
+// Land in a scan.
 #include <algorithm>
 
 #include "services/tracker/core/step.hpp"
@@ -11,7 +11,7 @@ constexpr double kLandShare = 0.6;           // of a segment's returns, where la
 constexpr std::size_t kMostLandPlaces = 40;  // of a segment that are asked for
 constexpr std::size_t kMostFed = 400;        // of a segment that are remembered, a scan
 constexpr int kMovesFor = 20;                // scans, and
-constexpr double kMovedByM = 2.0;            // since it was seen first: what went so far is no land
+constexpr double kMovedByM = 2.0;            // since it was seen first: a thing that went so far is no land
 constexpr std::size_t kLeastPieceReturns = 8;
 constexpr double kPieceExistence = 6.0;  // log odds
 constexpr double kPieceThing = 0.9;
@@ -20,7 +20,7 @@ bool HasMoved(const Followed& track) {
   return track.is_proven || (track.num_moving >= kMovesFor && (track.middle_m - track.first_m).norm() > kMovedByM);
 }
 
-// As a thing: what comes and goes is what a bank or a pier is cut into.
+// As a thing: pieces of a bank or a pier come and go.
 bool IsKnown(const Followed& track) {
   constexpr int kKnownScans = 8;
   return track.is_confirmed && (HasMoved(track) || track.num_hits >= kKnownScans);
@@ -28,7 +28,7 @@ bool IsKnown(const Followed& track) {
 
 }  // namespace
 
-// What the segmenter calls land, and what lies where land is remembered; but nothing that has been seen to move.
+// Segments that the segmenter calls land, and those where land is remembered; but nothing that has been seen to move.
 void Step::FindLand() {
   for (std::size_t i = 0; i < sightings_.size(); ++i) {
     const auto& seen = sightings_[i].seen;
@@ -84,14 +84,14 @@ void Step::FollowLandPieces() {
   for (std::size_t k = 0; k < pieces.size(); ++k) sightings_[pieces[k].index].seems_moving = seems_moving[k];
 }
 
-// What the ledger takes land to be lies in it by itself no more, unless it was seen to move: then it is a boat that came alongside, for as long as
-// beams end in it.
+// A track without a sighting of its own, inside of land by the ledger, is land, unless it was seen to move: then it is a boat that came alongside,
+// for as long as beams end in it.
 bool Step::IsLand(const Followed& track) const {
   constexpr double kWithinS = 0.5;
   return !HasMoved(track) && track.is_inside_now && track.inside_of == 0 && ToSeconds(scan_.end_time - track.seen_alone) > kWithinS;
 }
 
-// What stands beside land may be cut off it by chance, until the ledger has seen both for a while.
+// A segment beside land may be cut off it by chance, until the ledger has seen both for a while.
 bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
   constexpr int kSeenFor = 10;  // scans
   constexpr double kBesideShoreM = 2.0;
@@ -100,7 +100,7 @@ bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
     if (!sightings_[k].seen.is_land ||
         (sightings_[k].middle_m - sightings_[i].middle_m).norm() > sightings_[k].radius_m + sightings_[i].radius_m + kBesideShoreM)
       continue;
-    // Not the hull of a bay: its shore.
+    // The shore, not the hull, of a bay.
     if (std::ranges::any_of(sightings_[k].places_m, [&](const Eigen::Vector2d& place_m) {
           return (place_m - sightings_[i].middle_m).norm() < sightings_[i].radius_m + kBesideShoreM;
         }))

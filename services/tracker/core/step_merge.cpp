@@ -8,7 +8,7 @@ namespace lookout::tracker {
 
 namespace {
 
-constexpr double kNearM = 2.0;  // m, between the outlines of what may be one
+constexpr double kNearM = 2.0;  // m, between the outlines of two tracks that may be one
 constexpr double kNeverS = 0.0;
 constexpr double kFoundS = 0.3;
 constexpr double kMissedS = 0.15;  // more than once
@@ -55,7 +55,7 @@ bool Step::IsLikePart(const Followed& larger, const Followed& lesser, double sha
   const auto around = RectangleAround(larger.outline_m);
   const double area = AreaOf(lesser.outline_m);
   const bool is_piece = area < kPieceShare * AreaOf(larger.outline_m) && RectangleAround(lesser.outline_m).length_m < kPieceM;
-  // Within the outline of what may be a dock with berths, only what touches it.
+  // Within the outline of a possible dock with berths, only tracks that touch it.
   if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m) || around.length_m > kLongestWholeM)
     return is_piece && Touch(larger, lesser);
   if (shared_m2 > 0.0 && shared_m2 >= kWithinShare * area) return true;
@@ -94,7 +94,7 @@ bool Step::IsSuspect(const Followed& track) const {
   });
 }
 
-// Whether the first, known and lost although it should have been seen, is the second, which came up beside where it was seen last.
+// Whether the first track, known and lost although it should have been seen, is the second, which came up beside its last place.
 bool Step::IsFoundAgain(const Followed& lost, const Followed& found) const {
   constexpr double kLostProbability = 0.3;
   constexpr double kBeforeS = 1.5;
@@ -115,7 +115,7 @@ bool Step::IsFoundAgain(const Followed& lost, const Followed& found) const {
   return times < kMostTimesLarger && times > 1.0 / kMostTimesLarger;
 }
 
-// For how long two must look like one until they are taken for one; 0: they do not, in this scan.
+// For how long two tracks must look like one until they are taken for one; 0: they do not, in this scan.
 double Step::OneForS(const Followed& one, const Followed& other) const {
   constexpr double kShortestS = 0.5;
   constexpr double kLongestS = 10.0;
@@ -132,7 +132,7 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   const Followed& lesser = area >= other_area ? other : one;
   const auto both = Intersection(one.outline_m, other.outline_m);
   const double shared_m2 = both.empty() ? 0.0 : std::max(1e-9, AreaOf(both));
-  // Longer where both are well known, as a boat at a dock with which it is segmented for a while.
+  // Longer where both are well known, as a boat and the dock with which it is segmented for a while.
   if (!both.empty() && shared_m2 >= 0.5 * std::min(area, other_area) && !(one.is_seen_now && other.is_seen_now)) {
     const int num_hits = one.is_confirmed == other.is_confirmed ? std::min(one.num_hits, other.num_hits) : (one.is_confirmed ? one : other).num_hits;
     return std::clamp(kPerHitS * num_hits, kShortestS, kLongestS);
@@ -143,12 +143,12 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   return is_moving_together && GapOf(one.outline_m, other.outline_m).distance_m < kNearM ? kPartS : kNeverS;
 }
 
-// The second becomes one with the first, by the older name.
+// The second track becomes one with the first, by the older name.
 void Step::Join(Followed& one, Followed& other) {
   const std::int64_t one_before = one.PublicId();
   const std::int64_t other_before = other.PublicId();
   const bool is_part = one.is_seen_now && other.is_seen_now;
-  // What is confirmed is not replaced by what is not.
+  // A confirmed track is not replaced by an unconfirmed one.
   const bool is_larger = AreaOf(other.outline_m) > AreaOf(one.outline_m);
   const bool is_part_better = IsMoving(one) == IsMoving(other) ? is_larger : IsMoving(other);
   const bool is_other_better = is_part ? is_part_better : other.seen_alone > one.seen_alone;
@@ -180,7 +180,7 @@ void Step::Join(Followed& one, Followed& other) {
   other.is_ended = true;
 }
 
-// Two that look like one for some time are one. What speaks against it in between takes as long away.
+// Two tracks merge after their evidence for being one object has lasted `OneForS()`. Each scan with evidence against it subtracts its own duration.
 void Step::Merge() {
   std::map<Ids, double> still_s;
   for (auto one = known_.tracks.begin(); one != known_.tracks.end(); ++one) {

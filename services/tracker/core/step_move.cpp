@@ -27,7 +27,7 @@ void Step::Place(Followed& track) {
   track.radius_m = RadiusOf(track.outline_m, track.middle_m);
 }
 
-// Where it is and how it moves, by what is seen of it.
+// Place and motion by the seen outline.
 void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& sides) {
   const auto& sighting = sightings_[i];
   if (!track.body) {
@@ -37,7 +37,7 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
     return;
   }
   if (track.body->IsMoving(kMovesProbability)) ++track.num_moving;
-  // Where another that is known lies in what is seen, this is not the outline of one.
+  // Where another known track lies in the seen outline, that is not the outline of one thing.
   const bool grows = sighting.use != Sighting::Use::kLand && std::ranges::none_of(known_.tracks, [&](const Followed& other) {
                        return other.is_confirmed && other.id != track.id && IsWithin(other.middle_m, sighting.middle_m, sighting.radius_m) &&
                               Contains(seen.outline_m, other.middle_m);
@@ -54,7 +54,7 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
   Place(track);
 }
 
-// What moves is remembered in a frame of its own, until it has stood for a while.
+// A moving thing is remembered in a frame of its own, until it has stood for a while.
 void Step::ChooseFrame(Followed& track) {
   constexpr double kStandsInFrameS = 2.0;
   constexpr double kMovedM = 1.5;

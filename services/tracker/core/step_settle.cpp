@@ -1,4 +1,4 @@
-// How the own position bears on what it places.
+// The effect of the own position on the places of obstacles.
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -7,7 +7,7 @@
 
 namespace lookout::tracker {
 
-// What was placed earlier in the scan, where the own position became much better known within it.
+// Obstacles that were placed earlier in the scan, where the own position became much better known within it.
 void Step::LeaveOutdated() {
   constexpr double kTimes = 4.0;
   constexpr double kLeastM2 = 0.3 * 0.3;
@@ -22,7 +22,8 @@ void Step::LeaveOutdated() {
   }
 }
 
-// The own position became much better known: tracks move to where most of them are seen now. Where too few agree, each may be anywhere near.
+// The own position became much better known: tracks move by the shift that brings most of them to segments of now. Where too few agree, each may be
+// anywhere near.
 void Step::Settle() {
   constexpr double kSds = 3.0;
   constexpr double kSameM = 0.5;
@@ -46,7 +47,7 @@ void Step::Settle() {
     const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - place_m).squaredNorm(); });
     return nearest == to_m.end() || (*nearest - place_m).norm() > kSameM ? nullptr : &*nearest;
   };
-  // Of those that a shift brings to what is seen: how many, and by how much in the mean.
+  // Of the tracks that a shift brings to segments: how many, and by how much in the mean.
   const auto brought_by = [&](const Eigen::Vector2d& shift_m) {
     std::pair<int, Eigen::Vector2d> brought(0, Eigen::Vector2d::Zero());
     for (const auto& from : from_m) {

@@ -52,7 +52,7 @@ void Things::Update(Utime time, std::span<const Track> tracks, std::span<const E
   }
 }
 
-// A thing is named by its first track. Where that casts off, what stays is not of it any more.
+// A thing is named by its first track. Where that casts off, the rest belongs to it no more.
 void Things::RenameOrphans() {
   std::map<std::int64_t, std::int64_t> renamed;
   for (auto& [track, member] : members_) {

@@ -1,4 +1,4 @@
-// Which tracks are one thing with others: land, structures, and what stands beside them.
+// Groups tracks to things: land, structures, and the tracks that stand beside them.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,29 @@
 
 namespace lookout::tracker {
 
-/// A pier in pieces is one thing, and so is a quay with all that is moored to it: what stands for a while within kBesideM of land, or of what belongs
-/// to land, belongs to it; what stands beside a structure belongs to that, and of any two that stand side by side the one to the other. Once it does
-/// it stays so, since outlines and kinds flicker, until it moves or is no track any more. So a boat that casts off is a thing of its own.
+/// A pier in pieces is one thing, and so is a quay with all that is moored to it: a track that stands for a while within kBesideM of land, or of a
+/// track that belongs to land, belongs to it; one that stands beside a structure belongs to that, and any two that stand side by side are one. It
+/// stays so, since outlines and kinds flicker, until it moves or is no track any more. So a boat that casts off is a thing of its own.
 class Things {
  public:
   static constexpr double kBesideM = 3.0;
   /// Of any two that stand: nobody steers between them.
   static constexpr double kTouchM = 1.0;
-  /// Before an alert of it can come up. What moves is known to within a second, and leaves again.
+  /// Before an alert of it can come up. A moving track is known to within a second, and leaves again.
   static constexpr double kStandsS = 0.2;
 
   /// One scan. Call Rename of that scan before.
   /// @param shore_m  remembered land with water before it, on the map
-  /// @param proof    which of what seems to move may be a piece of what stands; nullptr: none
+  /// @param proof    which moving tracks may be pieces of something that stands; nullptr: none
   void Update(Utime time, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m, const Proof* proof = nullptr);
   void Rename(std::int64_t from_track, std::int64_t to_track);
   void Clear();
 
   /// The thing that a track belongs to: land, the first track of its structure, or it alone.
   std::int64_t ThingOf(std::int64_t track_id) const;
-  /// Whether it is of more than one track.
+  /// Whether the thing has more than one track.
   bool IsGroup(std::int64_t thing) const;
-  /// In the last Update: things that became part of others, or are called otherwise since the track left that named them (from, to).
+  /// In the last Update: things that became part of others, or have another name since the track left that named them (from, to).
   const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
 
  private:

@@ -1,4 +1,4 @@
-// Where the things were that a person acknowledged, of those things that no track names: land, and things that have no track.
+// Acknowledged places of things that no track names: land, and things without a track.
 #pragma once
 
 #include <Eigen/Core>

@@ -18,7 +18,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr double kMostGapOfTimeS = 10.0;  // between scans; beyond, everything begins anew
-constexpr double kMostJumpM = 10.0;       // of the own position, beyond what its speed explains
+constexpr double kMostJumpM = 10.0;       // of the own position, beyond the way that its speed explains
 constexpr double kTypicalRangeM = 20.0;   // at which an error of heading counts as one of position
 constexpr double kLeastSettlingM = 0.1;
 constexpr double kWaterlineRangeM = 150.0;
@@ -89,7 +89,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   return memory.picture;
 }
 
-// Counter of the reason for which nothing that is known holds any more; nullptr: there is none.
+// Counter of the reason why the tracks are forgotten; nullptr: there is none.
 std::int64_t* Tracker::Memory::WhyAnew(const ScanInput& scan) {
   if (!time) return nullptr;
   const double since_s = ToSeconds(scan.end_time - *time);

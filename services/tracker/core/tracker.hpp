@@ -1,4 +1,4 @@
-// Follows obstacles over scans: what was seen, what could have been seen, who is who, how it moves, what it will do.
+// Follows obstacles over scans: sightings, visibility, association, motion, closest approach.
 #pragma once
 
 #include <Eigen/Core>

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLongestGap{1000};
 constexpr double kLeastSpeedMps = 0.5;
-// The heading changes by so much more, in the mean. Chosen: an avoiding action is 30 to 60 deg, the corner of a channel or a round turn 90 to 180.
+// Mean further change of heading. Chosen: an avoiding action is 30 to 60 deg, the corner of a channel or a round turn 90 to 180.
 constexpr double kMeanRestRad = DegToRad(60.0);
 // Changes of heading at which a tenth, three tenths ... of the turns have ended, in units of the mean: -ln(1 - q).
 constexpr std::array kEnds{0.10536, 0.35667, 0.69315, 1.20397, 2.30259};

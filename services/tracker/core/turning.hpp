@@ -1,4 +1,4 @@
-// What a turn does to where a boat will be: how fast the own boat turns, and closest approach while either boat turns.
+// Turns: how fast the own boat turns, and closest approach while either boat turns.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ struct TurnLook {
   double least_radps;
 };
 
-/// How fast the way of the own boat bends.
+/// Turn rate of the own boat's way.
 class TurnWatch {
  public:
   /// Scan by scan. Over the last second from 3 deg/s on, over the last three from 1.5 deg/s on, and only where heading and course over ground turn
@@ -50,10 +50,10 @@ class TurnWatch {
 /// does: there all five agree. Cost: 10 us where all is far, some 100 us where five probabilities are in doubt.
 ClosestApproach ApproachInTurns(const Moving& own, const Moving& other, const RelativeCovariance& covariance, const EncounterParams& params);
 
-/// Where a boat is after a time of its turn.
+/// The place of a boat after a time of its turn.
 Moving AfterTurn(const Moving& moving, double time_s);
 
-/// How long the turn goes on in the median of its ends.
+/// Duration of the turn in the median of its ends.
 double MedianTurnS(double turn_rate_radps);
 
 }  // namespace lookout::tracker

@@ -9,7 +9,7 @@ namespace lookout::tracker {
 
 namespace {
 
-// Clear of what lies ahead on a course that leads to it.
+// The turn after which a boat is clear of a thing ahead that its course led to.
 constexpr double kAsideRad = DegToRad(60.0);
 // Beside a quay or a pile the distance wavers by so much and no more.
 constexpr double kNearerShare = 0.1;

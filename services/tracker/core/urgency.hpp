@@ -6,7 +6,7 @@
 
 namespace lookout::tracker {
 
-/// What the own boat can do. Sources: config/schema/tracker.proto.
+/// Abilities of the own boat. Sources: config/schema/tracker.proto.
 struct OwnAbility {
   double reaction_s = 5.0;         // from the alert to the hand on the helm or throttle
   double deceleration_mps2 = 0.5;  // of a stop

@@ -21,7 +21,7 @@ constexpr std::size_t RowOf(std::int32_t dy) {
   return static_cast<std::size_t>(row);
 }
 
-// The number of an offset of the half disc: (0, 0), and what comes after it by x, then y.
+// The number of an offset of the half disc: (0, 0), and later ones by x, then y.
 struct OffsetTable {
   std::array<std::array<std::uint8_t, static_cast<std::size_t>(2) * VoteGrid::kReach + 1>, VoteGrid::kReach + 1> number{};
   std::size_t count = 0;
@@ -136,7 +136,7 @@ void VoteGrid::RememberHeld() {
   }
 }
 
-// What shares a cell with more of something else says nothing of that cell.
+// A piece that shares a cell with more of another piece says nothing of that cell.
 void VoteGrid::KeepMajority() {
   for (auto& cell : held_) {
     std::map<std::int32_t, int> count_of;
@@ -152,7 +152,7 @@ void VoteGrid::KeepMajority() {
   }
 }
 
-// How likely a return of the one and a return of the other are of one segment, from -1 to 1.
+// How likely a return of one piece and a return of the other are of one segment, from -1 to 1.
 float VoteGrid::VoteOf(const Held& one, const Held& other) const {
   const auto ones = EntriesOf(one);
   const auto others = EntriesOf(other);

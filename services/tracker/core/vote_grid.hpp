@@ -15,7 +15,7 @@ namespace lookout::tracker {
 /// A mean of votes of -1 to 1, the last ones most.
 class MeanVote {
  public:
-  /// @param fade  what an earlier vote counts when one more comes
+  /// @param fade  weight of an earlier vote when one more comes
   void Add(float vote, float weight, float fade) {
     weight_ = fade * weight_ + weight;
     if (weight_ > 0.0F) mean_ += weight / weight_ * (vote - mean_);
@@ -30,16 +30,16 @@ class MeanVote {
 
 /// Square cells of a plane, or of several (frames), with a mean vote for each pair of cells at most kReach cells apart.
 ///
-/// Memory: 400 bytes a cell. What is not seen for a while is forgotten; with more than kMostCells cells, after an eighth of that while; with more
-/// than four times as many (32 MB), all is.
+/// Memory: 400 bytes a cell. A cell that is not seen for a while is forgotten; with more than kMostCells cells, after an eighth of that while; with
+/// more than four times as many (32 MB), all are.
 class VoteGrid {
  public:
   static constexpr std::int32_t kReach = 5;  // cells
   static constexpr std::size_t kMostCells = 20'000;
 
-  /// What a cell stands for: all that has returns in it, or the segment with most of them (those, where several have as many).
+  /// The segment that a cell stands for: each that has returns in it, or the one with most of them (those, where several have as many).
   enum class Content { kAll, kMostOf };
-  /// What a vote counts: one, or more with the returns of both cells.
+  /// The weight of a vote: one, or more with the returns of both cells.
   enum class Weight { kOne, kByReturns };
 
   VoteGrid(double cell_m, Content content) : cell_m_(cell_m), content_(content) {}
@@ -69,7 +69,7 @@ class VoteGrid {
     float mean = 0.0F;           // vote, this scan's in it
   };
 
-  /// Begins a scan. What was not seen in the last num_scans is forgotten.
+  /// Begins a scan. Cells that were not seen in the last num_scans are forgotten.
   /// @param frame_ids         frames of this scan, at most 65 536
   /// @param segment_of_piece  at most 65 536 pieces
   void Begin(std::span<const std::int64_t> frame_ids, std::span<const std::int32_t> segment_of_piece, std::int64_t num_scans);

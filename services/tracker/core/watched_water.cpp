@@ -12,7 +12,7 @@ namespace lookout::tracker {
 
 namespace {
 
-constexpr double kBesidePlaceM = 1.0;    // of the place: what was met there may be the thing
+constexpr double kBesidePlaceM = 1.0;    // of the place: a return nearer than this may be the thing
 constexpr double kOverWaterM = 0.1;      // lower beams may meet the water
 constexpr double kLostPacketRad = 0.01;  // to the next column
 constexpr double kCentimetres = 100.0;

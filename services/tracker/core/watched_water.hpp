@@ -19,7 +19,7 @@ struct Watched {
   friend bool operator==(const Watched&, const Watched&) = default;
 };
 
-/// How much says that a thing came up just then, where it is seen now: how unlikely it is that it was there and was missed each time, as log odds.
+/// Evidence that a thing came up just then, where it is seen now: how unlikely it is that it was there and was missed each time, as log odds.
 /// @param seen_share  of scans in which it is seen, of those in which it could be
 double CameUpLogOdds(const Watched& watched, double seen_share);
 

@@ -20,9 +20,9 @@ constexpr double kHeightStepM = 0.25;
 constexpr double kHullMarginM = 1.0;  // as of RemarksOnBoat: fenders, an engine, a bowsprit
 // A gap that is interrupted for so many bearings is one.
 constexpr std::size_t kMostBetween = 1;
-// A column looks half way to the next, so that a scan of few columns leaves no degree out; what is farther apart is a gap.
+// A column looks half way to the next, so that a scan of few columns leaves no degree out; a larger distance is a gap.
 constexpr double kMostApartDeg = 1.5;
-// Below that of every track, of land and of what has no name.
+// Below the id of every track, of land and of things without a name.
 
 Eigen::Vector2d DirectionOf(double bearing_rad) {
   const auto [sine, cosine] = SinCosOf(bearing_rad);
@@ -43,7 +43,7 @@ bool IsInside(const Eigen::AlignedBox3d& box_m, const Eigen::Vector2d& place_m) 
   return !box_m.isEmpty() && (place_m.array() >= box_m.min().head<2>().array()).all() && (place_m.array() <= box_m.max().head<2>().array()).all();
 }
 
-// What a place in the vessel frame is to the lidar.
+// A place in the vessel frame, as the lidar sees it.
 struct Seat {
   double azimuth_rad;
   double elevation_rad;
@@ -160,7 +160,7 @@ std::optional<ZoneGrid::Run> ZoneGrid::RunOf(std::size_t bearing, Unseen reason,
     if (k < run->first) run->begins = false;
     if (k > run->last) run->ends = false;
   }
-  // What lies below the lowest beam, or below those that pass over the own deck, was seen before it came so near, or is not for another reason.
+  // Water below the lowest beam, or below those that pass over the own deck, was seen before it came so near, or is unseen for another reason.
   if ((reason == Unseen::kHeight && !is_last) || (reason == Unseen::kHidden && !run->ends)) return std::nullopt;
   const double depth_m = static_cast<double>(run->last - run->first + 1) * range_step_m_;
   if ((!run->begins || !run->ends) && depth_m < ZoneSight::kLeastDepthM) return std::nullopt;
@@ -359,7 +359,7 @@ void ZoneSight::Tell() {
   is_whole_ &= !wide_.empty();
   int num_new = 0;
   for (std::size_t i = 0; i < now.size(); ++i) num_new += now[i] && !told_[i] ? 1 : 0;
-  // What is seen again meanwhile is told anew when it is lost.
+  // A gap that is seen again meanwhile is told anew when it is lost.
   const bool is_new = num_new > 0 && (num_new * step_rad >= kLeastWidthRad - 1e-9 || std::ranges::count(told_, true) == 0);
   if (is_new) {
     ++num_told_;

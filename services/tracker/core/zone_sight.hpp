@@ -1,4 +1,4 @@
-// Which part of the guard zone nobody looks into: no beam comes there, what is there is not taken, or the own boat hides it.
+// The part of the guard zone that nobody looks into: no beam comes there, the segmenter takes nothing there, or the own boat hides it.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -45,7 +45,7 @@ struct ZoneSightParams {
   Sector field_of_view = {};                       // azimuths of the lidar
   Eigen::AlignedBox3d own_vessel_box_m{};          // vessel frame; empty = none
   Eigen::AlignedBox2d own_hull_m{};                // vessel frame, inside of the box
-  std::vector<float> expected_elevation_rad = {};  // of the lidar that the config names, from the lowest up: for what is told before a scan came
+  std::vector<float> expected_elevation_rad = {};  // of the lidar that the config names, from the lowest up: for words before a scan came
 };
 
 /// The zone in cells: bearings of a degree, ranges of a twentieth of its range. A cell can be looked into where a beam passes through a post that
@@ -105,18 +105,18 @@ class ZoneGrid {
   std::vector<Way> ways_;
 };
 
-/// Scan by scan. Calm water gives no returns, so what tells is which columns come at all, and which beams end on the own boat before they reach a
-/// place. A place is not looked into when less than a quarter of the last seconds' scans look there, and is again above three fifths: an alert needs
-/// 3 of 5 scans. So packets that are lost, and who walks past the lidar, are told only where they last.
+/// Scan by scan. Calm water gives no returns, so the columns that come at all tell, and the beams that end on the own boat before they reach a place.
+/// A place is not looked into when less than a quarter of the last seconds' scans look there, and is again above three fifths: an alert needs 3 of 5
+/// scans. So lost packets, and a person who walks past the lidar, are told only where they last.
 class ZoneSight {
  public:
   /// A person in a kayak or a dinghy.
   static constexpr double kPostM = 1.0;
-  /// A gap of 5 deg is 0.9 m wide at the edge of a zone of 10 m: a kayak fits into it with its paddler. What stays on one bearing comes nearer unseen
-  /// in it until it is wider than the gap. Narrower ones (a mast) are counted, and raise no alert: they would do so for ever.
+  /// A gap of 5 deg is 0.9 m wide at the edge of a zone of 10 m: a kayak fits into it with its paddler. A boat that stays on one bearing comes nearer
+  /// unseen in it until it is wider than the gap. Narrower gaps (a mast) are counted, and raise no alert: they would do so for ever.
   static constexpr double kLeastWidthRad = DegToRad(5.0);
   static constexpr double kLeastWidthM = 0.8;
-  /// Of a part that is nearer or farther than what is seen of its bearing.
+  /// Of a part that is nearer or farther than the seen part of its bearing.
   static constexpr double kLeastDepthM = 1.0;
   static constexpr double kTimeConstantS = 2.0;
   static constexpr double kUnseenShare = 0.25;

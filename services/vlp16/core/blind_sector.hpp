@@ -1,4 +1,4 @@
-// The part of the circle in which a head with a limited field of view does not fire: what is missing there was never sent.
+// The part of the circle in which a head with a limited field of view does not fire: returns missing there were never sent.
 #pragma once
 
 #include <bitset>
@@ -23,7 +23,7 @@ class BlindSector {
   /// @return 0 while there is none
   int WidthCdeg() const { return sector_ ? sector_->width_cdeg() : 0; }
 
-  /// @return how much of the gap lies in the sector, 0 when it does not hold all of it
+  /// @return the part of the gap in the sector, 0 when the sector does not hold all of it
   int HiddenCdeg(const Gap& gap, int step_cdeg) const;
 
  private:

@@ -17,7 +17,7 @@ namespace lookout::vlp16 {
 struct PacketBundle {
   Utime time;  // host time of the first payload; of a mark alone, at which it was set
   std::int64_t seq = 0;
-  bool is_start = false;  // what was before this bundle is void
+  bool is_start = false;  // state before this bundle is void
   bool is_end = false;    // nothing follows it
 
   struct Item {

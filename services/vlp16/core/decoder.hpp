@@ -99,7 +99,7 @@ class Decoder {
     std::int64_t num_sentences = 0;
   };
 
-  /// What a start mark makes void.
+  /// State that a start mark makes void.
   struct State {
     State(const DecoderParams& params, PacketSequencer::Handler on_packet, ScanHandler on_scan)
         : detector(params.model), sequencer(std::move(on_packet)), clock(params.time), cutter(params.cut_azimuth_rad, std::move(on_scan)) {}

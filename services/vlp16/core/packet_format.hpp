@@ -1,6 +1,5 @@
-// What the packets of the VLP-16 family look like: sizes, offsets, bytes with a meaning, timing, beams. Constants only: the decoder reads by
-// them and the simulator writes by them.
-// Source, where nothing else is said: Velodyne VLP-16 User Manual 63-9243 Rev E, chapter 9 "Sensor Data" (here: the manual).
+// The packets of the VLP-16 family: sizes, offsets, bytes with a meaning, timing, beams. Constants only: the decoder reads by them and the simulator
+// writes by them. Source, where nothing else is said: Velodyne VLP-16 User Manual 63-9243 Rev E, chapter 9 "Sensor Data" (here: the manual).
 #pragma once
 
 #include <array>

@@ -126,7 +126,7 @@ bool PacketSequencer::IsClockSet(Utime host_time, const DataPacket& packet, micr
   return std::chrono::abs(elapsed - last_->steps.duration) < std::chrono::abs(elapsed - difference);
 }
 
-// Sensor time says that packets are missing: what the azimuth says of it.
+// Sensor time says that packets are missing: does the azimuth agree?
 PacketSequencer::Place PacketSequencer::PlaceBehindGap(Utime host_time, const DataPacket& packet, Place place, double num_missing) const {
   place.kind = Kind::kMissing;
   place.num_lost = static_cast<int>(std::lround(num_missing));

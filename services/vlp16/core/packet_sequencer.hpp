@@ -1,4 +1,4 @@
-// The place of each data packet in sensor time: puts right what came out of order, drops what came twice or too late, counts what never came.
+// The place of each data packet in sensor time: restores their order, drops copies and packets that are too late, counts missing ones.
 #pragma once
 
 #include <array>
@@ -50,8 +50,8 @@ struct SequenceCounts {
   std::int64_t num_disagreements = 0;  // azimuth and sensor time tell of different losses; time was believed
 };
 
-/// A packet is next when it follows the last by what that took. Where packets are missing it is held until they come, or eight later ones have.
-/// Missing packets are known from sensor time (their period) and checked by the azimuth that was passed over. When azimuth says that nothing is
+/// A packet is next when it follows the last by that one's duration. Behind a gap packets are held until the missing ones come, or eight later ones
+/// have. Missing packets are known from sensor time (their period) and checked by the azimuth that was passed over. When azimuth says that nothing is
 /// missing, and the host's clock, that no such time passed, sensor time was set.
 class PacketSequencer {
  public:
@@ -64,7 +64,7 @@ class PacketSequencer {
   /// Passes packets, in their order, to the handler: this one, or those that waited for it, or none.
   PacketVerdict Add(Utime host_time, const DataPacket& packet, Model model);
 
-  /// End of input: passes on what is held.
+  /// End of input: passes on the held packets.
   void Flush();
 
   /// Sensor time of the stamp of a position packet; nullopt when no data packet came within a second of it by the host's clock.

@@ -30,7 +30,7 @@ struct SentenceTime {
   friend bool operator==(const SentenceTime&, const SentenceTime&) = default;
 };
 
-/// What newer firmware tells of the sensor itself.
+/// Values of newer firmware about the sensor itself.
 struct Telemetry {
   int top_board_celsius = 0;
   int bottom_board_celsius = 0;

@@ -23,7 +23,7 @@ class ScanCutter {
   /// @param clock   for the scan that begins in it
   void Add(const PlacedPacket& placed, const ClockReading& clock, const PacketCounts& counts);
 
-  /// What follows does not belong to what was: ends the scan, if there is one.
+  /// Later packets do not continue the earlier ones: ends the scan, if there is one.
   void End(const PacketCounts& counts);
 
   /// Clock of the scan that began last; nullopt before the first.

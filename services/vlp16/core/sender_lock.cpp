@@ -24,7 +24,7 @@ bool SenderLock::IsAllowed(const Sender& sender) const { return allowed_.empty()
 
 void SenderLock::Reset() { streams_ = {}; }
 
-// kUnknown for what is not valid as a whole.
+// kUnknown for a packet that is not valid as a whole.
 ModelVerdict SenderLock::VerdictOf(ModelDetector& detector, Stream stream, Bytes payload) {
   if (stream == Stream::kPosition) {
     const auto fault = ParsePositionPacket(payload).fault;
@@ -43,8 +43,8 @@ SenderLock::Candidate* SenderLock::CandidateFor(StreamState& state, Utime time, 
     return &*candidate;
   }
   if (!IsOfFamily(alone) && alone != ModelVerdict::kUndecided) return nullptr;
-  // Without a holder nothing is decided by who was there first, but by who is valid first. Of two that are known by their intervals alone one is
-  // tried after the other: alternating, neither would show an interval.
+  // Without a holder the first valid sender counts, not the first sender. Of two senders that are known by their intervals alone one is tried after
+  // the other: alternating, neither would show an interval.
   if (!is_over && (state.holder || alone == ModelVerdict::kUndecided)) return nullptr;
   candidate = Candidate{sender, ModelDetector(model_), time, std::chrono::microseconds(0)};
   return &*candidate;

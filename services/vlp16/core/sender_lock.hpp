@@ -39,7 +39,7 @@ class SenderLock {
   static constexpr std::chrono::seconds kSilence{10};
   static constexpr std::chrono::seconds kPortSilence{1};
   static constexpr std::chrono::milliseconds kTrial{250};
-  /// A packet on trial counts for so much at most, and what is silent for longer than kTrialPause begins its trial anew.
+  /// A packet on trial counts for so much at most, and a sender that is silent for longer than kTrialPause begins its trial anew.
   static constexpr std::chrono::milliseconds kTrialStep{50};
   static constexpr std::chrono::seconds kTrialPause{1};
 
@@ -63,7 +63,7 @@ class SenderLock {
 
   bool IsAllowed(const Sender& sender) const;
 
-  /// Who holds a stream is void: a new run begins.
+  /// Forgets the holders of both streams: a new run begins.
   void Reset();
 
  private:

@@ -1,4 +1,4 @@
-// How the sensor's clock and the host's stand to each other, what the sensor knows of UTC, and which of the two clocks stamps a scan.
+// The relation of the sensor's clock to the host's, the sensor's knowledge of UTC, and which of the two clocks stamps a scan.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@ namespace lookout::vlp16 {
 enum class TimeChoice { kAuto, kSensor, kHost };
 enum class TimeSource { kHost, kSensor };
 
-/// What the sensor's clock is worth. "RMC" stands for any sentence that tells UTC: see TimeOfSentence.
+/// The quality of the sensor's clock. "RMC" stands for any sentence that tells UTC: see TimeOfSentence.
 enum class ClockState {
   kUnknown,            // no position packet, or none for 3 s (of the sensor's clock, which no stall and no step of the host's stretches)
   kNoPps,              // no PPS, and there was no lock since the sensor started: its hour began when it liked
@@ -25,7 +25,7 @@ enum class ClockState {
   kError,              // the sensor says that its PPS is wrong
 };
 
-/// What the clock says at one instant; a scan keeps that of its first column, so that times inside a scan are regular.
+/// The clock at one instant; a scan keeps that of its first column, so that times inside a scan are regular.
 struct ClockReading {
   TimeSource source = TimeSource::kHost;
   std::chrono::microseconds offset{0};  // UTC minus SensorTime, by the clock that is in use: Utime(time + offset)
@@ -61,10 +61,10 @@ class SensorClock {
   Utime TimeOfStampAlone(Utime host_time, std::uint32_t stamp_us) const;
 
  private:
-  /// When something came. What is late, and a host's clock that is set, change its host time only.
+  /// The time at which something came. Late deliveries, and a host's clock that is set, change its host time only.
   struct Instant {
     Utime host_time;
-    std::optional<SensorTime> time;  // nullopt before the first data packet, and of what came before a restart
+    std::optional<SensorTime> time;  // nullopt before the first data packet, and of arrivals before a restart
   };
   struct Rmc {
     Instant came;  // when it told a new time

@@ -42,7 +42,7 @@ class CapturePlayer {
   /// A datagram was found: from then on there is a CaptureTime().
   bool has_begun() const { return has_begun_; }
 
-  /// The recording's time now: of the last datagram, and what has passed since; never past the one that comes next.
+  /// The recording's time now: that of the last datagram and the time passed since; never past the next datagram.
   Utime CaptureTime(std::chrono::microseconds elapsed) const;
 
   /// Sum over the files of CaptureReader::counters(); captures_read, capture_stamp_jumps.

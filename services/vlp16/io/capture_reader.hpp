@@ -45,7 +45,7 @@ class CaptureReader {
   std::int64_t num_frames() const { return frames_.num_frames(); }        // read so far
   std::int64_t num_datagrams() const { return frames_.num_datagrams(); }  // returned so far; 0 at the end with num_frames() above 0: all were refused
   std::int64_t num_damaged() const { return damage_.empty() ? 0 : 1; }
-  const std::string& damage() const { return damage_; }  // what is wrong, and after how many frames; empty = nothing
+  const std::string& damage() const { return damage_; }  // the damage, and after how many frames; empty = none
 
   /// frames_read, frames_datagram, then skipped frames by reason.
   std::vector<Counter> counters() const;

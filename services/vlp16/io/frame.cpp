@@ -35,11 +35,11 @@ std::string AddressText(int family, Bytes address) {
   return inet_ntop(family, address.data(), text.data(), text.size()) != nullptr ? text.data() : "";
 }
 
-// What is short is short because the capture cut it, or because a length lies.
+// A short datagram is short because the capture cut it, or because a length lies.
 FrameFault Short(bool is_cut) { return is_cut ? FrameFault::kTruncated : FrameFault::kBadLength; }
 
-// `bytes`: what was captured behind the IP header, with what pads the frame. `ip_size`: of the datagram, as the IP header says: it tells what is
-// wrong with a datagram that is not whole, and no more.
+// `bytes`: captured behind the IP header, with padding of the frame. `ip_size`: of the datagram, by the IP header: it tells only what is wrong with a
+// datagram that is not whole.
 Frame ParseUdp(Bytes bytes, std::size_t ip_size, bool is_cut, std::string source_address) {
   const auto fault = ip_size > bytes.size() ? Short(is_cut) : FrameFault::kBadLength;
   if (bytes.size() < kUdpHeaderSizeBytes) return Refused(fault);
@@ -86,7 +86,7 @@ Frame ParseIp(Bytes bytes, bool is_cut) {
   }
 }
 
-// `offset`: of the ethertype. `header_size`: of what stands before the network layer when there is no VLAN tag.
+// `offset`: of the ethertype. `header_size`: of the bytes before the network layer when there is no VLAN tag.
 Frame ParseEthertype(Bytes bytes, std::size_t offset, std::size_t header_size, bool is_cut) {
   while (true) {
     if (bytes.size() < std::max(offset + 2, header_size)) return Refused(Short(is_cut));

@@ -40,7 +40,7 @@ struct Frame {
   Bytes payload = {};  // within the bytes of the frame
 };
 
-/// What libpcap captures or reads; closes itself.
+/// Handle of libpcap, for capturing or reading; closes itself.
 using CaptureHandle = std::unique_ptr<pcap, void (*)(pcap*)>;
 
 /// Link types that are understood, by libpcap's DLT numbers: Ethernet (also VLAN-tagged, stacked), Linux cooked v1, v2, raw IP, BSD loopback.
@@ -60,7 +60,7 @@ Frame ParseFrame(int link_type, Bytes bytes, bool is_cut);
 /// @return nullopt when it cannot be: nanoseconds outside of a second, or a year outside of 1900 to 2200
 std::optional<Utime> UtimeOfStamp(std::int64_t seconds, std::int64_t nanoseconds);
 
-/// The frames of one capture, live or from a file, one after the other: what was a datagram, and what was skipped and why.
+/// The frames of one capture, live or from a file, one after the other: datagrams, and skipped frames with the reason.
 class FrameCounts {
  public:
   /// Counts a frame.

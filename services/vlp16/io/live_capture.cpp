@@ -43,7 +43,7 @@ std::string ReasonOf(pcap_t* capture, int status) {
 
 std::string FilterOfPorts(int data_port, int position_port, bool has_vlan) {
   const std::string ports = "(udp and (dst port " + std::to_string(data_port) + " or dst port " + std::to_string(position_port) + "))";
-  // "vlan" shifts where everything to the right of it is looked for, so what is plain stands first and the tags nest.
+  // "vlan" shifts the offsets of everything to its right, so untagged frames stand first and the tags nest.
   return has_vlan ? ports + " or (vlan and (" + ports + " or (vlan and " + ports + ")))" : ports;
 }
 

@@ -51,7 +51,7 @@ class LiveCapture final : public io::Source {
   Utime last_time() const override { return last_time_; }
   std::string fault() const override { return fault_; }
 
-  /// What is let through, as given to the kernel; empty while nothing can be captured.
+  /// The filter given to the kernel; empty while nothing can be captured.
   const std::string& filter() const { return filter_; }
 
   /// capture_kernel_drops, capture_interface_drops (reads the kernel's), capture_source_refused, capture_outages, capture_read_errors,
@@ -81,7 +81,7 @@ class LiveCapture final : public io::Source {
   std::string fault_;
   std::string read_fault_;  // why reading ended; until Poll() reports it
   std::string filter_;
-  Drops past_drops_;  // of what has been closed
+  Drops past_drops_;  // of closed captures
   FrameCounts frames_;
   std::int64_t num_source_refused_ = 0;
   std::int64_t num_outages_ = 0;

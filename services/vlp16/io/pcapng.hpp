@@ -37,7 +37,7 @@ class PcapngReader {
   /// Link types of the interfaces that were described so far, each once, as they came.
   const std::vector<int>& link_types() const { return link_types_; }
 
-  const std::string& damage() const { return damage_; }  // what is wrong; empty = nothing
+  const std::string& damage() const { return damage_; }  // empty = none
   std::int64_t position_bytes() const { return file_.position_bytes(); }
 
  private:

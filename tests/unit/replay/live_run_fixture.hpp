@@ -40,7 +40,8 @@ class LiveRun : public ::testing::Test {
   struct Process {
     Process(const fs::path& config, tracker::Handover& handover)
         : service(bus, tracker::LoadParams(config),
-                  {.before = handover.Read(), .leave = [&handover](const auto& alerts, const auto& tracks) { handover.Write(alerts, tracks); }}) {}
+                  {.before = handover.Read(), .hand_over = [&handover](const auto& alerts, const auto& tracks) { handover.Write(alerts, tracks); }}) {
+    }
     bus::MemoryBus bus;
     tracker::Service service;
   };

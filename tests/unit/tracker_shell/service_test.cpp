@@ -242,7 +242,7 @@ TEST_F(TrackerService, SplitsTracksThatDoNotFitIntoOneMessage) {
 // Of obstacles from elsewhere.
 TEST(TrackerServiceWithoutALidar, UsesEachScanAsSoonAsPoseIsThere) {
   bus::MemoryBus bus;
-  const Service service(bus, test::MakeParams(), Given{.sources = {.has_beams = false, .has_labels = false}, .script = {}});
+  const Service service(bus, test::MakeParams(), RunContext{.sources = {.has_beams = false, .has_labels = false}, .script = {}});
   int num_unknown = 0;
   bus::Subscribe<tracks_t>(bus, bus::kTracks, [&](const tracks_t& message) { num_unknown += message.sight == tracks_t::SIGHT_UNKNOWN ? 1 : 0; });
   for (int i = 0; i < 30; ++i) bus::Publish(bus, bus::kPose, test::MakePose(20'000 * i, i));

@@ -44,15 +44,14 @@ constexpr double kHeaveSdM = 0.05;
 
 // A contradiction that lasts so long without changing is one of the state.
 constexpr auto kMaxRefusal = 3s;
-// Of positions while accelerometers are used, which are off by less than a metre by then: what jumps is rather the receiver.
+// Of positions while accelerometers are used, whose positions are off by less than a metre by then: a jump is rather the receiver's.
 constexpr auto kMaxStrapdownRefusal = 10s;
 constexpr double kEvenInSds = 5.0;
-// One that changes, while what is refused agrees with itself, is of the state too: an IMU leads it away ever faster. A compass beside gyroscopes is
-// disturbed for so long by what the boat passes.
+// A difference that changes, while the refused measurements agree with each other, is of the state too: an IMU leads it away ever faster. A compass
+// beside gyroscopes is disturbed for so long by things that the boat passes.
 constexpr auto kMaxAgreeingRefusal = 3s;
 constexpr auto kMaxCompassRefusal = 10s;
-// How far those that follow each other may differ: by their deviations, and by what a boat does meanwhile. Longer apart they say nothing of each
-// other.
+// How far successive measurements may differ: by their deviations, and by the boat's motion meanwhile. Longer apart they say nothing of each other.
 constexpr double kAgreeInSds = 7.0;
 constexpr double kMostAccelerationMps2 = 5.0;
 constexpr double kMostSpeedMps = 30.0;
@@ -65,8 +64,7 @@ constexpr double kUnknownTurnRadps = 0.2;
 constexpr double kLateVelocitySdMps = 0.15;
 constexpr auto kTimedVelocityAge = 2s;
 
-// Accelerations of a boat that cannot be distinguished from gravity: 0.5 m/s2 for 2 s, a wave's (motion.cpp). What is left of them when the IMU is
-// calm.
+// Accelerations of a boat that cannot be distinguished from gravity: 0.5 m/s2 for 2 s, a wave's (motion.cpp). Their remainder when the IMU is calm.
 constexpr double kForceSdMps2 = 0.5;
 constexpr double kForceTimeS = 2.0;
 constexpr double kCalmForceSdMps2 = 0.1;
@@ -92,8 +90,8 @@ bool Update(const Innovation<kSize>& innovation, bool is_forced, State& state, G
   return correction.is_accepted;
 }
 
-// What refused measurements say of the state. A sensor's fault changes; a wrong state differs by the same all the time. And it was led away where the
-// refused have agreed with each other for long while they went away from it.
+// The verdict of refused measurements on the state. A sensor's fault changes; a wrong state differs by the same all the time. The state was led away
+// where refused measurements have agreed with each other for long while their difference from the state changed.
 struct StateFault {
   bool is_wrong = false;
   bool is_led_away = false;
@@ -113,7 +111,7 @@ StateFault AddRefusal(const Eigen::Vector3d& residual, double sd, bool agrees, U
   return {time - *refusals.since >= max_even, *refusals.since > *refusals.agreeing_since && time - *refusals.agreeing_since >= max_agreeing};
 }
 
-// What says the same to the last digit is frozen: it agrees with nothing.
+// A value that repeats to the last digit is frozen: it agrees with nothing.
 bool AgreesWithLast(const FixMeasurement& fix, const State& state) {
   const auto& refusals = state.aiding.fix_refusals;
   const bool is_frozen =
@@ -153,7 +151,7 @@ bool IsAttitudeGivenUp(const Eigen::Vector3d& angles_rad, const Eigen::Vector3d&
   return true;
 }
 
-// The lever arm in the level frame. Without heading east and north are left to the position, which is then that of the antenna.
+// The lever arm in the level frame. Without heading its east and north remain in the position, which is then that of the antenna.
 Eigen::Vector3d LeverLevel(const FilterParams& params, const State& state) {
   Eigen::Vector3d lever_level_m = state.nominal.q_level_vessel * AntennaLever(params);
   if (!state.aiding.has_heading) lever_level_m.head<2>().setZero();
@@ -182,7 +180,7 @@ void UseHeadingErrorModel(const ErrorModel& model, State& state) {
   state.aiding.heading_error_model = model;
 }
 
-// The bound of a kind is wider for what is of that kind already: a deviation that hovers about it does not make a new error each time.
+// Hysteresis: while a heading error is of the current kind, its bound is larger, so that a value close to the bound does not toggle.
 double Bound(double max_sd, bool is_of_kind) { return is_of_kind ? max_sd / kSameErrorRatio : max_sd; }
 
 Eigen::Vector3d AntennaOf(const FixMeasurement& fix, const State& state) { return state.nominal.level->frame.Forward(fix.antenna); }

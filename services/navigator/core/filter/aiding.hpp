@@ -37,7 +37,7 @@ struct FixMeasurement {
 struct GateCounts {
   std::int64_t num_gated = 0;    // contradict the state by more than chance
   std::int64_t num_renewed = 0;  // contradicted it for so long, and so evenly, that the state was given up
-  // Of those that were gated: sum of normalised innovations squared, and of their degrees of freedom.
+  // Of gated measurements: sum of normalised innovations squared, and of their degrees of freedom.
   double nis_sum = 0.0;
   std::int64_t num_degrees = 0;
 };

@@ -7,14 +7,14 @@ namespace lookout::navigator {
 
 namespace {
 
-// What is older than the last by more is of another time scale.
+// A fix that is older than the last by more is of another time scale.
 constexpr std::chrono::seconds kMostLate(60);
 
 double SecondsApart(Utime a, Utime b) { return std::abs(std::chrono::duration<double>(a - b).count()); }
 
 }  // namespace
 
-// In a straight line: through the earth it is shorter, but never for what is near.
+// In a straight line: through the earth it is shorter, but never for near places.
 double BelievedPlace::DistanceM(const Run& run, const GeodeticPlace& place) { return LocalFrame(run.place).Forward(place).norm(); }
 
 bool BelievedPlace::IsWithinReach(const Run& run, Utime time, const GeodeticPlace& place, double sd_m) {
@@ -25,7 +25,7 @@ bool BelievedPlace::IsWithinReach(const Run& run, Utime time, const GeodeticPlac
 void BelievedPlace::Add(Utime time, const GeodeticPlace& place, double sd_m, Run& run) {
   // Several sentences of an epoch are one fix.
   if (run.count == 0 || time != run.last) ++run.count;
-  // One that came late says nothing of where the boat is now.
+  // A late fix says nothing of where the boat is now.
   if (time < run.last && run.last - time <= kMostLate) return;
   run.last = time;
   run.place = place;
@@ -37,8 +37,8 @@ BelievedPlace::Verdict BelievedPlace::Judge(Utime time, const GeodeticPlace& ant
   const Run first{time, time, place, sd_m, 0};
   if (!believed_) believed_ = first;
   const bool is_doubted = doubted_ && IsWithinReach(*doubted_, time, place, sd_m);
-  // Reach grows while fixes are held. It does not make those right that are farther off than a boat gets in the shortest hold; what is nearer may be
-  // the step of a receiver that had stood still, and the gates of the filter are for it.
+  // Reach grows while fixes are held. That does not make a fix right that is farther off than a boat gets in the shortest hold; a nearer one may be
+  // the step of a receiver that had stood still, which the gates of the filter handle.
   const bool is_far = DistanceM(*believed_, place) > kMostSpeedMps * ToSeconds(kLeastHold);
   const bool is_nearer = is_far && is_doubted && DistanceM(*doubted_, place) < DistanceM(*believed_, place);
   if (!is_nearer && IsWithinReach(*believed_, time, place, sd_m)) {

@@ -9,12 +9,12 @@
 
 namespace lookout::navigator {
 
-/// A fix is believed where a boat can have got there since the last one that was believed; the first one is. Farther off the receiver is wrong: its
-/// last place of yesterday, that of its almanac, a digit that was changed. Or those before it were. So fixes that are out of reach are held until
-/// they have agreed with each other, and none came that is within reach, for as long as those before them did: at least kLeastHold, at most
-/// kMostHold. Then the boat is there.
+/// A fix is believed where a boat can have got there since the last believed fix; the first one is. Farther off either the receiver is wrong (its
+/// last place of yesterday, that of its almanac, a changed digit) or the earlier fixes were. So fixes out of reach are held until they have agreed
+/// with each other, and no fix came within reach, for as long as the earlier ones did: at least kLeastHold, at most kMostHold. Then the boat is
+/// there.
 ///
-/// What is nearer than 8.5 km (kMostSpeedMps in kMostHold) comes within reach as time passes without a believed fix: after 1 s at 140 m, after 13 s
+/// A place nearer than 8.5 km (kMostSpeedMps in kMostHold) comes within reach as time passes without a believed fix: after 1 s at 140 m, after 13 s
 /// at a minute of latitude.
 ///
 /// Depends on times of measurements and on places alone.
@@ -24,11 +24,11 @@ class BelievedPlace {
   static constexpr double kMostSpeedMps = 142.0;
   /// How far a boat gets in the time by which measurements are off that have none of their own.
   static constexpr double kSlackM = 50.0;
-  /// Of the deviations of both fixes, each per axis.
+  /// Multiple of the deviations of both fixes, each per axis.
   static constexpr double kSlackInSds = 7.0;
   static constexpr std::chrono::seconds kLeastHold{10};
   static constexpr std::chrono::seconds kMostHold{60};
-  /// Fixes out of reach by which a new place is told, at least.
+  /// Fewest fixes out of reach that establish a new place.
   static constexpr int kLeastFixes = 4;
 
   enum class Verdict {
@@ -39,7 +39,7 @@ class BelievedPlace {
 
   Verdict Judge(Utime time, const GeodeticPlace& place, double sd_m);
 
-  /// Of the fix that was held last, until there is a new place.
+  /// The fix that was held last, until there is a new place.
   struct Held {
     Utime time;
     double distance_m = 0.0;  // from the last that was believed

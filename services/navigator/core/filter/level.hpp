@@ -40,7 +40,7 @@ struct Here {
 /// Source: directions by LocalFrame at the boat's place, exact; the convergence is that of a sphere, bounded at 6 m from a pole.
 Here HereOf(const State& state);
 
-/// Of the level frame; where no place is known yet, standard gravity and no rate.
+/// Gravity and rotation of the level frame; where no place is known yet, standard gravity and no rate.
 Earth EarthOf(const State& state);
 
 /// Moves the origin to the boat when that is farther than kMaxLevelM from it. Nominal state and covariance are turned exactly; the height of the

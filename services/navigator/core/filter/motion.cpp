@@ -12,7 +12,7 @@ namespace {
 
 // Longer intervals are propagated in steps: the turn of the lever arms is linear in each.
 constexpr double kMaxStepS = 0.1;
-// After so long without any item nothing is left of what was known.
+// After so long without any item nothing of the state is valid.
 constexpr double kMaxSilenceS = 60.0;
 
 // Assumptions on small boats without an IMU. A course is changed, a wave passed, within seconds.
@@ -37,7 +37,7 @@ constexpr double kGyroScaleErrorRootS = 0.002;
 // Tide, trim and load: a decimetre in a minute.
 constexpr double kWaterLevelMPerRootS = 0.013;
 
-// What of the gyroscope's bias is known when the IMU comes back, at least.
+// Least knowledge of the gyroscope's bias when the IMU comes back.
 constexpr double kReturnedGyroBiasSdRadps = DegToRad(0.05);
 constexpr double kReturnedAccelerometerBiasSdMps2 = 0.03;
 
@@ -179,7 +179,7 @@ void PropagateStep(const ImuSample* sample, double step_s, const Earth& earth, c
   covariance(kWaterLevel, kWaterLevel) += kWaterLevelMPerRootS * kWaterLevelMPerRootS * step_s;
 }
 
-// Gives up what was measured too long ago.
+// Gives up values that were measured too long ago.
 void ForgetOld(const FilterParams& params, State& state) {
   if (state.aiding.has_heading) {
     const double heading_variance = state.covariance(kRotationUp, kRotationUp);
@@ -207,7 +207,7 @@ void ForgetOld(const FilterParams& params, State& state) {
     const double variance = state.HorizontalVarianceM2();
     const double max_variance = state.aiding.position_sd_at_fix_m * state.aiding.position_sd_at_fix_m + params.max_coast_sd_m * params.max_coast_sd_m;
     const bool is_carried = state.aiding.fix.IsWithin(state.time, params.max_position_age) && variance <= max_variance;
-    // Fixes that contradicted are not forgotten: they tell the next one what was wrong.
+    // Contradicting fixes are not forgotten: they tell the next one what was wrong.
     if (!is_carried && state.aiding.fix.IsStoppedAt(state.time)) ForgetPlace(state);
   }
   if (!state.aiding.has_position) {

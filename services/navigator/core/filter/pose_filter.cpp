@@ -16,11 +16,11 @@ using filter::State;
 
 // Satellites are above only, so height is worse than position: VDOP is about one and a half to two times HDOP.
 constexpr double kVerticalFactor = 2.0;
-// What is kept beyond the greatest latency.
+// History kept beyond the greatest latency.
 constexpr std::chrono::microseconds kMoreHistory = 1s;
 // A sample of the IMU stands for no longer than this: five of a slow one (50 Hz).
 constexpr std::chrono::microseconds kMaxSampleAge = 100ms;
-// Of a receiver that says it is better: no deviation is less than a millimetre.
+// Least deviation of a position, whatever a receiver says: a millimetre.
 constexpr double kMinSdM = 0.001;
 
 // Sentences of one fix differ by how many digits they have, at most: receivers have 4 to 8 of a minute.
@@ -136,7 +136,7 @@ Pose ToPose(const State& state, const std::optional<GeodeticPlace>& datum, const
   return pose;
 }
 
-// "no position fix for 3 s, no heading for 2 s" of those that came and do not come any more; empty = none.
+// "no position fix for 3 s, no heading for 2 s" of inputs that came and have stopped; empty = none.
 std::string StoppedInputs(const State& state) {
   std::string text;
   const auto say = [&](const filter::UseTimes& input, const char* name) {
@@ -364,10 +364,10 @@ void PoseFilter::Process(Event& event, std::size_t index) {
 
 void PoseFilter::ProcessUntil(Utime time) {
   for (; num_processed_ < events_.size() && events_[num_processed_].time <= time; ++num_processed_) {
-    // What was measured before the first item may still come.
+    // Measurements of before the first item may still come.
     if (!base_) {
       base_ = filter::FreshState(events_.front().time - params_.max_latency - kMoreHistory, params_.unmeasured_tilt_sd_rad);
-      // Until the first fix says better.
+      // Valid until the first fix.
       if (params_.datum) filter::BeginLevel(*datum_, Eigen::Vector2d::Zero(), *base_);
     }
     Process(events_[num_processed_], num_processed_);

@@ -21,7 +21,7 @@
 
 namespace lookout::navigator {
 
-/// Measurements that were not used, or only against what was known: README.md has the meaning of each.
+/// Measurements that were not used, or only against the state: README.md has the meaning of each.
 inline constexpr auto kFilterCountNames =
     std::to_array<std::string_view>({"unusable_fix", "unreachable_fix", "new_place", "late_fix", "late_attitude", "late_imu", "unusable_imu",
                                      "gated_fix", "gated_attitude", "renewed_position", "renewed_attitude"});
@@ -33,7 +33,7 @@ using FilterCounts = Counts<kFilterCountNames>;
 /// Inputs are kept, with the state behind each, for `max_latency` and a second, and at most kMaxEvents of them.
 class PoseFilter {
  public:
-  /// 60 s of an IMU at 400 Hz and what comes beside it would be 100 MB; so many are 14 MB, 10 s of it.
+  /// 60 s of an IMU at 400 Hz and the other measurements would be 100 MB; so many are 14 MB, 10 s of it.
   static constexpr std::size_t kMaxEvents = 4000;
 
   explicit PoseFilter(const FilterParams& params);
@@ -70,7 +70,7 @@ class PoseFilter {
   /// Fixes that are held at the time of the last pose since no boat can have got there (believed_place.hpp), in words; empty = none.
   const std::string& doubted() const { return doubted_; }
 
-  /// What has stopped at the time of the last pose, in words: "no position fix for 3 s", ...; empty = nothing.
+  /// Inputs that have stopped at the time of the last pose, in words: "no position fix for 3 s", ...; empty = none.
   const std::string& stopped() const { return stopped_; }
 
  private:
@@ -91,7 +91,7 @@ class PoseFilter {
   bool Insert(Utime time, const Measurement& measurement);
   void Touch(std::size_t index);
   void DropOld();
-  // That of the same epoch; nullptr when there is none.
+  // The fix of the same epoch; nullptr when there is none.
   filter::FixMeasurement* SameEpoch(const filter::FixMeasurement& fix, Utime time, std::size_t& index);
   // The sample for the interval that ends at `time`, by the events around it.
   const ImuSample* SampleFor(std::size_t next_index, Utime time) const;
@@ -102,14 +102,14 @@ class PoseFilter {
   FilterParams params_;
   std::optional<GeodeticPlace> datum_;
   std::optional<LocalFrame> map_;
-  // In force from the time of the first fix at a new place on.
+  // Valid from the time of the first fix at a new place on.
   struct NextDatum {
     Utime time;
     GeodeticPlace datum;
   };
   std::optional<NextDatum> next_datum_;
   BelievedPlace believed_place_;
-  // The last fix but GGA that was believed, and what was believed before it.
+  // The last believed fix but GGA, and the place believed before it.
   struct Believed {
     std::string source;
     Utime time;

@@ -1,4 +1,4 @@
-// What the filter knows at one instant: a nominal state, the covariance of its error, and the status of its aids.
+// The filter's state at one instant: a nominal state, the covariance of its error, and the status of its aids.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,7 +21,7 @@ enum Part : int {
   kRotation = 6,       // about east, north, up, rad
   kRate = 9,           // rad/s, vessel frame: bias of the gyroscopes, or without them the rate itself
   kAcceleration = 12,  // m/s2: bias of the accelerometers in the vessel frame; without strapdown navigation, acceleration in the level frame
-  kFixError = 15,      // what the receiver's positions have in common for a while: east, north, up, m
+  kFixError = 15,      // common error of the receiver's positions for a while: east, north, up, m
   kHeadingError = 18,  // the same of the compass, rad, clockwise
   kWaterLevel = 19,    // up of the origin while the boat lies still on calm water, m
   kNumErrors = 20,
@@ -57,7 +57,7 @@ struct Refusals {
   // Without the difference to the state changing.
   std::optional<Utime> since;
   Eigen::Vector3d first_residual = Eigen::Vector3d::Zero();
-  // While each agreed with the one before it, and what the last one said.
+  // While each agreed with the one before it; the value of the last one.
   std::optional<Utime> agreeing_since;
   Utime last;
   GeodeticPlace last_place;  // of fixes
@@ -91,7 +91,7 @@ struct NominalState {
   Eigen::Vector3d fix_error_m = Eigen::Vector3d::Zero();
   double heading_error_rad = 0.0;
   double water_level_m = 0.0;
-  // Of the vessel, in its frame: follows from the IMU or from `rate`.
+  // Turn rate of the vessel, in its frame: follows from the IMU or from `rate`.
   Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
 
   Eigen::Matrix3d R_level_vessel() const { return q_level_vessel.toRotationMatrix(); }
@@ -106,7 +106,7 @@ struct AidingStatus {
 
   bool has_gyro = false;      // `rate` is a bias
   bool is_strapdown = false;  // `acceleration` is a bias
-  // What the IMU was known to be off by when it stopped.
+  // The known error of the IMU when it stopped.
   Eigen::Vector3d last_gyro_bias_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d last_accelerometer_bias_mps2 = Eigen::Vector3d::Zero();
 
@@ -141,7 +141,7 @@ struct AidingStatus {
   Eigen::Vector3d mean_force_mps2 = Eigen::Vector3d::Zero();
   double force_variance_mps2_2 = 1.0;
 
-  /// Of what the heading came from.
+  /// The source of the heading.
   const UseTimes& heading() const { return heading_source == HeadingSource::kCourse ? course : sensor_heading; }
 };
 
@@ -197,7 +197,7 @@ Eigen::Quaterniond RotationBy(const Eigen::Vector3d& rotation_rad);
 /// Turns the vessel about the up axis, clockwise from above, and the errors of its attitude with it.
 void TurnClockwise(double angle_rad, State& state);
 
-/// Turns the vessel to this roll and pitch, keeping its heading and what is known of that. The tilt is measured from now on.
+/// Turns the vessel to this roll and pitch, keeping its heading and the deviation of the heading. The tilt is measured from now on.
 ///
 /// @param q_level_vessel  of any heading
 void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state);

@@ -108,7 +108,7 @@ std::array<float, Evidence::kBlock> Evidence::Of(const Block& features) const {
 void Evidence::Terms(std::span<const float> features, std::span<float> terms) const {
   std::ranges::fill(terms, 0.0F);
   for (const auto& tree : trees_) {
-    // Each answer halves the leaves: the last split's first, so that what remains stands together.
+    // Each answer halves the leaves, the last split's first, so that the remaining leaves stand together.
     std::size_t first = 0;
     std::size_t count = std::size_t{1} << tree.num_splits;
     const auto mean = [&] {

@@ -37,7 +37,7 @@ struct NamedSum {
   std::span<const NamedTree> trees;
 };
 
-/// What a sum looks at: its name and the names of its features in the order of their values.
+/// The features of a sum: its name and the names of its features in the order of their values.
 struct EvidenceLayout {
   std::string_view name;
   std::span<const std::string_view> features;
@@ -55,13 +55,14 @@ class Evidence {
   /// @param features  [features of the layout]. Cost: about 1.5 ns a tree
   float Of(std::span<const float> features) const;
 
-  /// The same of a block at once, to the bit. Their answers are vectors, and their sums do not wait for each other: a fraction of the time.
+  /// The sums of a block of rows at once, equal to the bit. Their answers are vectors, and their sums do not wait for each other: a fraction of the
+  /// time.
   static constexpr std::size_t kBlock = 16;
   using Block = std::array<const float*, kBlock>;  // each [features of the layout]
   std::array<float, kBlock> Of(const Block& features) const;
 
-  /// What each feature adds to Base(), to answer "why?". The splits of a tree are asked one after the other; what an answer changes in the mean of
-  /// the leaves that are still possible is the feature's.
+  /// The part that each feature adds to Base(), to answer "why?". The splits of a tree are asked one after the other; the change of the mean of the
+  /// leaves that are still possible is the feature's.
   ///
   /// @param terms  [features of the layout] Base() and their sum are Of(features), but for rounding
   void Terms(std::span<const float> features, std::span<float> terms) const;
@@ -88,7 +89,7 @@ class Evidence {
   std::vector<Tree> trees_;
 };
 
-/// Of 0 to 1, from the logarithm of its odds, as it is published. The same bits on every processor: Exp is our own, and IEEE 754 rounds the rest.
+/// A probability, 0 to 1, from its log odds, as it is published. The same bits on every processor: Exp is our own, and IEEE 754 rounds the rest.
 inline float ProbabilityOf(float log_odds) { return static_cast<float>(1.0 / (1.0 + Exp(-double{log_odds}))); }
 
 /// The sums that are compiled in, config/evidence/lookout.txtpb.

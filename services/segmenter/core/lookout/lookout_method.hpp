@@ -20,7 +20,7 @@
 
 namespace lookout::segmenter {
 
-/// What is said of a group beside its returns.
+/// Confidence and kind of a group, beside its returns.
 struct GroupFacts {
   float land_probability = 0.0F;
   float thing_probability = 0.0F;  // that it is a thing, and not spray, rain, foam or a glint
@@ -30,8 +30,8 @@ struct GroupFacts {
 /// LookoutParams::link for a lidar whose columns are so far apart: where they are wider than those of a VLP-16, the reach is longer.
 Reach LinkFor(Reach link, double column_step_rad);
 
-/// Works on one scan after the other and keeps nothing of the last but its memory. Pure in what it gives: the same scan gives the same groups,
-/// whatever came before. Turning the scene by whole columns or mirroring it changes nothing but the numbers of the groups.
+/// Works on one scan after the other and keeps nothing of the last but its memory: the same scan gives the same groups. Turning the scene by whole
+/// columns or mirroring it changes nothing but the numbers of the groups.
 class LookoutMethod {
  public:
   LookoutMethod(const LookoutParams& params, const Eigen::Matrix3d& R_vessel_lidar)
@@ -41,14 +41,13 @@ class LookoutMethod {
   /// Cost: about proportional to the returns and cells. Allocates nothing once it has seen a scan of that size.
   void Group(const Scan& scan, std::span<const Return> returns);
 
-  /// The steps of Group, in this order; lookout-fit takes what it fits on from between them.
-  /// 1. Tight pieces.
+  /// The steps of Group, in this order; lookout-fit reads its rows between them. 1. Tight pieces.
   void FindPieces(const Scan& scan, std::span<const Return> returns);
-  /// 2. kNumMerges times: what is measured of pairs of pieces (until the pieces change),
+  /// 2. kNumMerges times: features of the pairs of pieces (valid until the pieces change),
   std::span<const PiecePair> FindPairs(std::size_t merge);
   /// 3. and pieces merged by the log odds of these pairs.
   void Merge(std::size_t merge, std::span<const PiecePair> pairs);
-  /// 4. What is measured of each piece.
+  /// 4. Features of each piece.
   std::span<const PieceFeatures> MeasureGroups();
   void Judge(std::span<const PieceFeatures> features);
 

@@ -1,4 +1,4 @@
-// What the lookout method goes by. Lengths in metres, "per range" in metres per metre of distance.
+// Parameters of the lookout method. Lengths in metres, "per range" in metres per metre of distance.
 #pragma once
 
 #include <array>
@@ -29,21 +29,21 @@ std::array<Evidence, kNumSums> DefaultEvidences();
 struct MergeParams {
   Reach reach;
   double log_odds = 0.0;        // 0: more likely one than two
-  bool reaches_behind = false;  // what something nearer hides of a gap does not count for the reach
+  bool reaches_behind = false;  // the part of a gap that something nearer hides does not count for the reach
 };
 
 /// Defaults are those of config/schema/segmenter.proto, which says where they come from.
 struct LookoutParams {
   // Pieces: returns that lie so close that nothing passes between them.
   Reach link{0.3, 0.01};
-  // What is beyond doubt first; then the rest, by what the larger pieces look like. Reaches and thresholds belong to the evidence, which is fitted
-  // with them; they were chosen on the families of scenes (DECISIONS.md).
+  // Certain pairs merge first; then the rest, by features of the larger pieces. Reaches and thresholds belong to the evidence, which is fitted with
+  // them; they were chosen on the families of scenes (DECISIONS.md).
   std::array<MergeParams, kNumMerges> merges{{{{1.0, 0.03}, 2.0}, {{2.5, 0.08}, 1.0}, {{6.0, 0.12}, 0.0, true}}};
-  // A group of two returns or more is sure that is no clutter with a greater probability; what is sure is land that is so with a greater one.
+  // A group of two returns or more is sure when its probability to be no clutter is greater than this; a sure group is land when that probability is.
   double land_probability = 0.7;
   double sure_probability = 0.5;
   std::array<Evidence, kNumSums> evidence = DefaultEvidences();
-  /// Of the lidar over the water when the boat floats at rest.
+  /// Height of the lidar over the water when the boat floats at rest.
   double lidar_above_water_m = 1.0;
 };
 

@@ -25,11 +25,11 @@ constexpr Reach kReachToFew{0.5, 0.08};
 // bound goes by whole columns, so no order decides. Fitted: with 48 instead of 160 canals lose pairs that they need.
 constexpr int kMostFewBeside = 8;
 constexpr int kMostLargerBeside = 160;
-// The same of what stands behind in one column.
+// Pieces behind it in one column.
 constexpr int kMostBehind = 32;
 // Columns at each end of a gap in which its beams are looked at.
 constexpr int kBeamColumns = 16;
-// Twice the most pairs and more: with what the last look adds it is not full.
+// Twice the most pairs and more: the pairs of the last look do not fill it.
 constexpr std::size_t kSlots = std::bit_ceil(2 * PairFinder::kMostPairs);
 
 // Shares of the reach, tried one after the other until the bounds hold; at last there are no pairs. All of the scan has the same, so that neither
@@ -158,7 +158,7 @@ void PairFinder::LookBehind(const Reaches& reaches, const Shown& front, std::spa
     if (front.is_few && back.is_few && gap_m >= reach_of_few_m) continue;
     if ((front.is_few || back.is_few) && gap_m > reach_to_few_m) continue;
     if (back.is_few && reaches.to_few.per_range <= 0.0) continue;
-    Contact& contact = Meet(front, front.far, back, back.near, gap_m * gap_m);
+    Contact& contact = RecordContact(front, front.far, back, back.near, gap_m * gap_m);
     if (gap_m <= kFacedM) ++contact.num_faced;
     ++num_behind;
   }
@@ -173,7 +173,7 @@ bool PairFinder::IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int c
   return 2 * num_hidden > entry.max_ring - entry.min_ring;
 }
 
-// From where a piece ends in a column, on to what stands beside it on both sides.
+// From where a piece ends in a column, on to the pieces beside it on both sides.
 void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches, const Shown& from) {
   const Steps& own = steps_[static_cast<std::size_t>(from.entry)];
   ++num_looks_;
@@ -190,7 +190,7 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
   const int num_steps = columns_of(reach_m);
   const auto window_of = [&](double hidden_m) {
     const auto widest_m = static_cast<float>(reach_m + hidden_m);
-    // What is nearer of two is at most as far as this piece.
+    // The nearer piece of a pair determines the search radius, so this piece's far edge bounds it.
     const double most_m = (is_few ? std::min(reaches.any.At(far_m), reaches.of_few.At(far_m)) : reaches.any.At(far_m)) + hidden_m;
     return Window{from.near.range_m - widest_m, from.far.range_m + widest_m, static_cast<float>(most_m * most_m * kRoundedUp), hidden_m};
   };
@@ -200,10 +200,10 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
   for (const int direction : {1, -1}) {
     const int most_steps = std::min(kMostColumnsBeside, (direction > 0 ? own.after : own.before) - 1);
     if (is_few) {
-      MeetBeside(few_, window, from, {1, std::min(num_steps, most_steps), direction}, reaches.any, reaches.of_few, kMostFewBeside);
+      PairBeside(few_, window, from, {1, std::min(num_steps, most_steps), direction}, reaches.any, reaches.of_few, kMostFewBeside);
       continue;
     }
-    // What is larger looks for what is of few returns, not the other way round.
+    // A larger piece looks for pieces of few returns, not the other way round.
     const auto is_hidden = [&](int step) { return IsHidden(grid, entry, grid.Wrap(entry.column + direction * step)); };
     const int last_step = std::min(num_steps, most_steps);
     int step = 1;
@@ -211,8 +211,8 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
       while (step <= last_step && !is_hidden(step)) ++step;
     }
     if (!reaches_behind_ || is_counting_ || step > last_step) {
-      const Met larger = MeetBeside(larger_, window, from, {1, last_step, direction}, reaches.any, reaches.any, kMostLargerBeside);
-      MeetBeside(few_, window, from, {1, std::min(num_steps_to_few, larger.last_step), direction}, reaches.any, reaches.to_few, kMostFewBeside);
+      const Paired larger = PairBeside(larger_, window, from, {1, last_step, direction}, reaches.any, reaches.any, kMostLargerBeside);
+      PairBeside(few_, window, from, {1, std::min(num_steps_to_few, larger.last_step), direction}, reaches.any, reaches.to_few, kMostFewBeside);
       continue;
     }
     int num_larger = 0;
@@ -224,19 +224,19 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
       const int column = grid.Wrap(entry.column + direction * step);
       if (is_hidden(step)) with_hidden = window_of(++num_hidden * across_m);
       if (num_few < kMostFewBeside && step <= num_steps_to_few) {
-        num_few += MeetIn(few_, column, with_hidden, from, reaches.any, reaches.to_few);
+        num_few += PairInColumn(few_, column, with_hidden, from, reaches.any, reaches.to_few);
       }
-      num_larger += MeetIn(larger_, column, with_hidden, from, reaches.any, reaches.any);
+      num_larger += PairInColumn(larger_, column, with_hidden, from, reaches.any, reaches.any);
     }
   }
 }
 
-// Meets what is within both reaches, of which the first is longer by what is hidden, until so many have been met: then no further column is looked
-// at.
-PairFinder::Met PairFinder::MeetBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach,
-                                       const Reach& narrower, int most) {
+// Meets pieces within both reaches, of which the first is longer by the hidden part of the gap, until so many have been met: then no further column
+// is looked at.
+PairFinder::Paired PairFinder::PairBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach,
+                                          const Reach& narrower, int most) {
   const int num_columns = columns.num_columns();
-  Met met{0, walk.last_step};
+  Paired met{0, walk.last_step};
   if (walk.first_step > walk.last_step) return met;
   num_looks_ += walk.last_step - walk.first_step + 1;
   // First, without a branch, which are near in range.
@@ -257,7 +257,7 @@ PairFinder::Met PairFinder::MeetBeside(const Columns& columns, const Window& win
       const Shown& beside = shown_[static_cast<std::size_t>(near_[walk.direction > 0 ? i : num_near - 1 - i])];
       if (met.num >= most && beside.column != column) return;
       column = beside.column;
-      if (!MeetOne(window, from, beside, reach, narrower) || ++met.num != most) continue;
+      if (!PairOne(window, from, beside, reach, narrower) || ++met.num != most) continue;
       const int steps = walk.direction * (column - from.column);
       met.last_step = steps > 0 ? steps : steps + num_columns;
     }
@@ -277,21 +277,21 @@ PairFinder::Met PairFinder::MeetBeside(const Columns& columns, const Window& win
   return met;
 }
 
-// The same of one column, where a branch costs less than going twice through what it shows.
-int PairFinder::MeetIn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower) {
+// The same for one column, where a branch costs less than two passes through its pieces.
+int PairFinder::PairInColumn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower) {
   int num_met = 0;
   const std::size_t end = columns.begin_of_column[static_cast<std::size_t>(column) + 1];
   for (std::size_t at = columns.begin_of_column[static_cast<std::size_t>(column)]; at < end; ++at) {
     ++num_looks_;
     if (columns.near_m[at] > window.farthest_m) break;
     const Shown& beside = shown_[static_cast<std::size_t>(columns.entry[at])];
-    if (columns.far_m[at] >= window.nearest_m && MeetOne(window, from, beside, reach, narrower)) ++num_met;
+    if (columns.far_m[at] >= window.nearest_m && PairOne(window, from, beside, reach, narrower)) ++num_met;
   }
   return num_met;
 }
 
-bool PairFinder::MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower) {
-  // Least distance of what the two show, seen from above, and between which returns.
+bool PairFinder::PairOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower) {
+  // Least distance of the two pieces, seen from above, and between which returns.
   float squared_m2 = SquaredPlanDistance(from.near, beside.near);
   const LevelPoint* one = &from.near;
   const LevelPoint* other = &beside.near;
@@ -311,9 +311,9 @@ bool PairFinder::MeetOne(const Window& window, const Shown& from, const Shown& b
   if (&narrower != &reach) limit_m = std::min(limit_m, narrower.At(least_range_m));
   if (limit_m < 0.0 || squared_m2 > limit_m * limit_m) return false;
   if (one->range_m <= other->range_m) {
-    Meet(from, *one, beside, *other, squared_m2);
+    RecordContact(from, *one, beside, *other, squared_m2);
   } else {
-    Meet(beside, *other, from, *one, squared_m2);
+    RecordContact(beside, *other, from, *one, squared_m2);
   }
   return true;
 }
@@ -330,8 +330,8 @@ PairFinder::Contact& PairFinder::At(std::int32_t one, std::int32_t other) {
   return contacts_.back();
 }
 
-PairFinder::Contact& PairFinder::Meet(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point,
-                                      float squared_gap_m2) {
+PairFinder::Contact& PairFinder::RecordContact(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point,
+                                               float squared_gap_m2) {
   Contact& contact = At(front.piece, back.piece);
   // Of equal gaps the nearest.
   if (contact.front >= 0 &&

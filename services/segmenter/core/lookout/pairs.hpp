@@ -1,4 +1,4 @@
-// Pairs of neighbouring pieces, and what is measured of each pair: the features that say whether the two are one.
+// Pairs of neighbouring pieces, and the features of each pair that say whether the two are one.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@
 
 namespace lookout::segmenter {
 
-/// Of a pair. "Small" and "large" are the one of less and of greater width, "front" and "back" what is nearer and farther where the two come closest.
-/// Heights are over the water at rest. None depends on which piece is named first.
+/// Features of a pair. "Small" and "large" are the pieces of less and of greater width, "front" and "back" the nearer and the farther one where they
+/// come closest. Heights are over the water at rest. None depends on which piece is named first.
 enum class PairFeature : std::uint8_t {
   kRange,           // m, where the two come closest
   kGap,             // m, seen from above
-  kFreeGap,         // m, of the gap what nothing nearer hides
+  kFreeGap,         // m, the part of the gap that nothing nearer hides
   kGapColumns,      // columns between them there; 0 where they share columns
   kRadialGap,       // m, how much farther the back is there
   kRadialGapRings,  // the same over the distance at which the next ring would meet calm water
@@ -68,8 +68,8 @@ struct PiecePair {
 
 class PairFinder {
  public:
-  /// A scan gives no more pairs in a round, and none are looked for with more looks at columns and at what stands behind and beside. Normal scans
-  /// stay below: in rain and fog they take 2600 pairs and 180 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
+  /// A scan gives no more pairs in a round, and none are looked for with more looks at columns and at pieces behind and beside. Normal scans stay
+  /// below: in rain and fog they take 2600 pairs and 180 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
   /// hold.
   static constexpr std::size_t kMostPairs = 6000;
   static constexpr std::int64_t kMostLooks = 400'000;
@@ -82,11 +82,11 @@ class PairFinder {
   /// Pairs that come within `reach` of each other: in a column one behind the other, or beside each other.
   /// Cost: about proportional to the columns of all pieces, and bounded. Allocates nothing once it has seen a scan of that size.
   ///
-  /// @param reaches_behind  what something nearer hides of a gap does not count for the reach
+  /// @param reaches_behind  the part of a gap that something nearer hides does not count for the reach
   std::span<const PiecePair> Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, bool reaches_behind);
 
  private:
-  // What is within reach: of each other; of each other where both are of few returns; of something larger where one is.
+  // Reach of two pieces; of two pieces of few returns; of a larger piece and one of few returns.
   struct Reaches {
     Reach any;
     Reach of_few;
@@ -116,7 +116,7 @@ class PairFinder {
     std::int32_t num_faced = 0;
   };
 
-  // Where what stands beside a piece may be within reach.
+  // Where pieces beside a piece may be within reach.
   struct Window {
     float nearest_m;
     float farthest_m;
@@ -130,7 +130,7 @@ class PairFinder {
     int last_step;
     int direction;  // 1 or -1
   };
-  struct Met {
+  struct Paired {
     int num = 0;
     int last_step = 0;  // that was looked at
   };
@@ -168,12 +168,12 @@ class PairFinder {
   void LookBehind(const Reaches& reaches, const Shown& front, std::span<const Shown> behind);
   bool IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int column) const;
   void LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches, const Shown& from);
-  Met MeetBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach, const Reach& narrower,
-                 int most);
-  int MeetIn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower);
-  bool MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower);
+  Paired PairBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach, const Reach& narrower,
+                    int most);
+  int PairInColumn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower);
+  bool PairOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower);
   Contact& At(std::int32_t one, std::int32_t other);
-  Contact& Meet(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point, float squared_gap_m2);
+  Contact& RecordContact(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point, float squared_gap_m2);
   void Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const;
 
   double lidar_above_water_m_;

@@ -34,7 +34,7 @@ void PieceMeasurer::LookAround(const ScanGrid& grid, const PieceTable& pieces) {
       if (is_few && IsJudged(pieces, entry.piece)) few_.Add(entry);
       if (is_covered) ++Of(entry.piece, PieceFeature::kCovered);
       is_covered = is_covered || !is_few;
-      // What stands behind is sorted: the next is the nearest.
+      // Pieces behind are sorted: the next is the nearest.
       const bool has_backdrop = i + 1 < seen.size() && seen[i + 1].near_point.range_m - entry.far_point.range_m <= kBackdropM;
       if (has_backdrop) ++Of(entry.piece, PieceFeature::kBackdrop);
     }

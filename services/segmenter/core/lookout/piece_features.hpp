@@ -1,4 +1,4 @@
-// What is measured of a piece by itself and of what stands around it: the features that say whether it is land, and whether it is a thing at all.
+// Features of a piece by itself and of its surroundings, which say whether it is land, and whether it is a thing at all.
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ class PieceMeasurer {
   float& Of(std::int32_t piece, PieceFeature feature) { return features_[static_cast<std::size_t>(piece)][static_cast<std::size_t>(feature)]; }
   void LookAround(const ScanGrid& grid, const PieceTable& pieces);
 
-  // What is seen of pieces of few returns, column by column.
+  // Pieces of few returns, column by column.
   struct Few {
     std::vector<float> near_m;
     std::vector<float> far_m;
@@ -72,7 +72,7 @@ class PieceMeasurer {
       far_m.push_back(entry.far_point.range_m);
       piece.push_back(entry.piece);
     }
-    // Of other pieces, in columns from first to before end, and about as far off.
+    // Pieces in columns from first to before end, and about as far off.
     int NumAbout(const OutlineEntry& entry, int first_column, int end_column) const;
   };
 

@@ -9,7 +9,7 @@ namespace lookout::segmenter {
 
 namespace {
 
-// Less is rounding of coordinates: half of what a VLP-16 resolves.
+// A smaller difference is rounding of coordinates: half of the resolution of a VLP-16.
 constexpr double kLeastLineM = 1e-3;
 constexpr std::int32_t kNoPiece = -1;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -186,7 +186,7 @@ void PieceTable::MergeFacts(std::span<const std::int32_t> group_of_piece, std::i
 }
 
 void PieceTable::MergeOutlines(std::span<const std::int32_t> group_of_piece) {
-  std::size_t num = 0;  // what has been merged stands before what has not
+  std::size_t num = 0;  // merged entries stand before the others
   std::size_t i = 0;
   for (std::size_t column = 0; column + 1 < begin_of_column_.size(); ++column) {
     const std::size_t first_of_column = num;
@@ -258,7 +258,7 @@ void PieceTable::WidenGap(Columns& columns, std::int32_t column, std::int32_t af
   if (std::tie(gap.num, gap.nearer_end_m, gap.farther_end_m) > std::tie(widest.num, widest.nearer_end_m, widest.farther_end_m)) widest = gap;
 }
 
-// In each line the circle without the widest gap between its returns there: of a piece all round, too, whatever column the scan begins with.
+// In each line the circle without the widest gap between its returns there: also of a piece all round, whatever column the scan begins with.
 void PieceTable::CountBeams(int num_columns) {
   spans_.assign(facts_.size(), {});
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {

@@ -1,4 +1,4 @@
-// Pieces of a scan: returns that are taken for one surface, what is known of each piece, and its outline seen from above.
+// Pieces of a scan: returns that form one surface, the sums of each piece, and its outline seen from above.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ struct Arc {
 /// Columns that two arcs share.
 int SharedColumns(const Arc& one, const Arc& other, int num_columns);
 
-/// What a piece shows in one column.
+/// The part of a piece in one column.
 struct OutlineEntry {
   std::int32_t piece = 0;
   std::int32_t column = 0;
@@ -33,7 +33,7 @@ struct OutlineEntry {
   LevelPoint far_point{};
 };
 
-/// To 2^-10, a millimetre: half of what a VLP-16 resolves, and far above the rounding of coordinates, which changes as the scene turns. So what is
+/// To 2^-10, a millimetre: half of the resolution of a VLP-16, and far above the rounding of coordinates, which changes as the scene turns. So
 /// nothing stays nothing: the depth of returns of one range, or two returns off the line through them.
 inline float FeatureOf(double value) {
   constexpr double kRounder = 1.5 * (std::uint64_t{1} << 42U);  // in a sum with it, 2^-10 is the last place
@@ -51,7 +51,7 @@ struct PieceFacts {
   float min_height_m = 0.0F;  // over the lidar
   float max_height_m = 0.0F;
   Arc arc{};
-  // Of the line through it, seen from above.
+  // The line through it, seen from above.
   Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
   double length_m = 0.0;       // along it
@@ -67,10 +67,10 @@ class PieceTable {
   /// Cost: proportional to the returns. Allocates nothing once it has seen a scan of that size.
   void Build(const ScanGrid& grid, std::span<const std::int32_t> piece_of_return, std::int32_t count);
 
-  /// What Build would give for the groups in place of the pieces, but for the rounding of sums; from what is known of the pieces.
+  /// The result of Build for the groups in place of the pieces, but for the rounding of sums; computed from the sums of the pieces.
   ///
   /// @param group_of_piece  [size()] 0 to count - 1, in the order of the first piece of each
-  /// Cost: proportional to the columns of all pieces; the returns are but labelled.
+  /// Cost: proportional to the columns of all pieces; the returns are only labelled.
   void Merge(const ScanGrid& grid, std::span<const std::int32_t> group_of_piece, std::int32_t count);
 
   std::int32_t size() const { return static_cast<std::int32_t>(facts_.size()); }
@@ -79,7 +79,7 @@ class PieceTable {
 
   /// All outlines, by column from 0 on.
   std::span<const OutlineEntry> entries() const { return entries_; }
-  /// All that is seen in a column: one entry for each piece, the nearest first.
+  /// The entries of a column: one for each piece, the nearest first.
   std::span<const OutlineEntry> InColumn(std::int32_t column) const {
     const auto at = static_cast<std::size_t>(column);
     return std::span<const OutlineEntry>(entries_).subspan(begin_of_column_[at], begin_of_column_[at + 1] - begin_of_column_[at]);
@@ -98,7 +98,7 @@ class PieceTable {
   // Empty columns between two that follow each other in a piece.
   struct Gap {
     std::int32_t num = -1;
-    float nearer_end_m = 0.0F;  // ranges of what is nearest in the two
+    float nearer_end_m = 0.0F;  // ranges of the nearest returns of the two
     float farther_end_m = 0.0F;
     std::int32_t after = 0;  // the column that ends it
   };
@@ -133,7 +133,7 @@ class PieceTable {
   void MergeOutlines(std::span<const std::int32_t> group_of_piece);
   OutlineEntry* EntryOf(std::int32_t piece, std::size_t first_of_column, std::size_t end);
   void SortColumn(std::size_t first, std::size_t end);
-  // What follows from sums, outlines and runs, of the pieces that are new.
+  // Values derived from sums, outlines and runs, of the new pieces.
   void Measure(const ScanGrid& grid);
   void FindArcs(int num_columns);
   static void WidenGap(Columns& columns, std::int32_t column, std::int32_t after, float range_m);

@@ -12,11 +12,12 @@ namespace lookout::segmenter {
 
 namespace {
 
-// From the last column to the first where a scan is whole: as that from column to column, but for the unevenness of a turning head.
+// The step from the last column to the first of a whole scan: as from column to column, but for the unevenness of a turning head.
 constexpr double kMaxSeamSteps = 1.5;
 // Empty columns at least where it is not.
 constexpr int kLeastMissing = 8;
-// With those that stand for the rest of the circle: as many as a scan can have. A narrow part with fine columns would be millions of empty ones.
+// Columns, with those that stand for the rest of the circle: as many as a scan can have. A narrow part with fine columns would be millions of empty
+// ones.
 constexpr int kMostCells = 1 << 21;
 
 }  // namespace

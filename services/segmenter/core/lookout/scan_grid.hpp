@@ -52,7 +52,7 @@ class ScanGrid {
   int num_lines() const { return num_lines_; }
   int num_columns() const { return num_columns_; }
   int num_layers() const { return num_layers_; }
-  int RingOf(int line) const { return num_layers_ == 1 ? line : line / 2; }  // a division by what is not known takes long
+  int RingOf(int line) const { return num_layers_ == 1 ? line : line / 2; }  // a division by a number unknown at compile time takes long
   /// The usual angle from a column to the next: the median round the circle, so that holes and the cut of the scan do not count.
   double column_step_rad() const { return column_step_rad_; }
   /// The mean angle from a ring to the next; 0 where there is one ring.

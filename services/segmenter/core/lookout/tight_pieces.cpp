@@ -42,7 +42,7 @@ bool TightPieces::IsOtherNear(const ScanGrid& grid, int line, int first, float r
   return num_near > 0;
 }
 
-// Neighbours in a line are linked first, then what is farther apart in it: most links are found so, and what is of one run needs no further look.
+// Neighbours in a line are linked first, then returns farther apart in it: most links are found so, and returns of one run need no further look.
 void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
   by_line_.clear();
   run_at_.assign(static_cast<std::size_t>(grid.num_lines()) * static_cast<std::size_t>(grid.num_columns()), ScanGrid::kNone);

@@ -54,8 +54,8 @@ class TightPieces {
   UnionFind sets_;                    // of runs
   std::size_t num_runs_ = 0;          // that are not linked in their line
   std::vector<Seen> by_line_;         // the returns, line by line
-  std::vector<Seen> before_end_;      // scratch: returns near the end of what neighbours make
-  std::vector<std::int32_t> run_at_;  // [lines x columns] what is linked in a line; ScanGrid::kNone = no return
+  std::vector<Seen> before_end_;      // scratch: returns near the end of a run of neighbours
+  std::vector<std::int32_t> run_at_;  // [lines x columns] linked returns of a line; ScanGrid::kNone = no return
   std::vector<std::int32_t> size_of_set_;
   std::vector<std::int32_t> number_of_set_;
   std::vector<std::int32_t> of_return_;

@@ -204,7 +204,7 @@ std::vector<std::int32_t> ClusterComponents(std::span<const ComponentCentroid> c
   const CompatibilityRule rule(params);
   const PolarGrid grid(components, PairReach(components, params));
   Uniter uniter(components, grid, rule);
-  // What is near first: most of the rest is then of one cluster already.
+  // Near components first: most of the others are then of one cluster already.
   for (const int max_steps : {0, 1, std::max(kMaxBands, static_cast<int>(kMaxSectors))}) {
     grid.ForEachPair(max_steps, [&uniter](int cell, int other) { uniter.Join(cell, other); });
   }

@@ -25,7 +25,7 @@ struct ClusteringParams {
   double e2_max_distance_m = 0.0;  // 0 = at any distance (the paper)
 };
 
-/// What Algorithm 1 sees of a component.
+/// The properties of a component that Algorithm 1 uses.
 struct ComponentCentroid {
   explicit ComponentCentroid(const Eigen::Vector3d& p_lidar_m)
       : p_m(p_lidar_m),

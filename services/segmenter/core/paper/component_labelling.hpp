@@ -26,8 +26,8 @@ ShadowedReturns JoinShadowed(const RangeImage& image, std::span<const Return> re
 
 /// Components of a scan, each return in one; without `label_shadowed_returns` the shadowed ones are in none (the paper).
 ///
-/// A shadowed return with nothing close to it in the image is behind another object: it is looked at again in an image of such returns alone,
-/// at most kMaxLooks times; what is shadowed even then is a component by itself. So a near buoy neither hides nor swallows the shore behind it.
+/// A shadowed return with nothing close to it in the image is behind another object: it is looked at again in an image of such returns alone, at most
+/// kMaxLooks times; a return that is shadowed even then is a component by itself. So a near buoy neither hides nor swallows the shore behind it.
 Groups LabelComponents(const Scan& scan, std::span<const Return> returns, const LabellingParams& params);
 
 /// A bound for heads that stand still. Twice what is needed: at 10 Hz a pixel of 512 columns holds four columns of two returns, eight returns.

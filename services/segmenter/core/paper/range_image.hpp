@@ -10,7 +10,7 @@
 
 namespace lookout::segmenter {
 
-/// From a column or ring to the next.
+/// The step from a column or ring to the next.
 struct BeamStep {
   double sin_angle = 0.0;  // of the angle between the beams
   double cos_angle = 1.0;
