@@ -67,6 +67,23 @@ TEST_F(Recorder, BeginsWithRunInfoAndLogsEveryChannelWithItsTimeOfReceipt) {
   EXPECT_EQ(events[2].bytes, (std::vector<std::uint8_t>{1, 2, 3}));
 }
 
+// A bus that hands nothing on for long must not grow what is remembered: of RUN_INFO that comes back the last eight are known again.
+TEST_F(Recorder, KnowsItsLastEightRunInfosWhenTheyComeBack) {
+  for (const auto& [num_waiting, num_forgotten] : {std::pair{8, 0}, {9, 1}, {12, 4}}) {
+    bus::MemoryBus bus;
+    Service service(
+        bus, params_, run_info_t{}, [this] { return now_; }, RealDisk());
+    for (int i = 1; i < num_waiting; ++i) {
+      now_ += seconds(10);
+      service.AdvanceTo(now_);
+    }
+    support::HandleAll(bus);
+    service.Flush();
+    EXPECT_EQ(Events(service.log_file()).size(), static_cast<std::size_t>(num_waiting + num_forgotten)) << num_waiting;
+    now_ += seconds(10);
+  }
+}
+
 TEST_F(Recorder, RepeatsRunInfoEveryTenSecondsAndLogsItOnce) {
   Service service = Make();
   for (int i = 0; i < 21; ++i) {
