@@ -98,7 +98,6 @@ function(lookout_tested_folders result name)
       set(folders ${own_folders})
     endif()
   endif()
-  set_property(GLOBAL APPEND PROPERTY LOOKOUT_TESTED_FOLDERS ${folders})
   set(${result} "${folders}" PARENT_SCOPE)
 endfunction()
 
