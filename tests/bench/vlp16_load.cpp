@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "tests/support/counters.hpp"
 #include "tests/system/ingestion.hpp"
 
 namespace {
@@ -52,7 +53,7 @@ int Run(const std::filesystem::path& folder, double packets_per_s, double second
     std::fprintf(stderr, "lookout-vlp16 reports no more: %s\n", vlp16.process().Output().c_str());
     return EXIT_FAILURE;
   }
-  const auto count = [&after](std::string_view name) { return static_cast<long long>(CounterOf(*after, name)); };
+  const auto count = [&after](std::string_view name) { return static_cast<long long>(support::CountOf(*after, name)); };
   std::printf(
       "%.0f packets/s for %.0f s: sent %lld, received %lld, lost %lld, reordered %lld, kernel drops %lld; cpu %.2f %%, peak memory %.1f MB; "
       "the sender was at worst %.1f ms late\n",

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "services/georeferencer/service.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
 
 namespace {
@@ -47,12 +47,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bus.Publish(bus::kSegments, segments);
   for (const auto& pose : poses) bus.Publish(bus::kPose, pose);
   bus.Publish(bus::kSegments, segments);
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   service.AdvanceTo(test::At(0));
   service.AdvanceTo(test::At(1'000'000));
   service.Finish();
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   return 0;
 }

@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/bus/memory_bus.hpp"
 #include "services/segmenter/service.hpp"
+#include "tests/support/memory_bus.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size > static_cast<std::size_t>(lookout::bus::kMaxMessageBytes)) return 0;
@@ -16,8 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const lookout::segmenter::Service service(bus, params);
   bus.Publish(lookout::bus::kLidarScan, {data + (size > 0 ? 1 : 0), data + size});
-  while (bus.HandleOnce()) {
-  }
+  lookout::support::HandleAll(bus);
   static_cast<void>(service.Report());
   return 0;
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "services/tracker/service.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 
 namespace {
@@ -109,12 +109,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     message[kFingerprintBytes + place % (message.size() - kFingerprintBytes)] = data[i + 2];
   }
   for (const auto& [channel, bytes] : messages) bus.Publish(*channel, bytes);
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   service.AdvanceTo(Utime(std::chrono::seconds(1'000'000)));
   service.AdvanceTo(Utime(std::chrono::seconds(1'000'001)));
   service.Finish();
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   return 0;
 }

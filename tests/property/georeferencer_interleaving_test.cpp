@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "services/georeferencer/service.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
 
 namespace lookout::georeferencer {
@@ -72,12 +72,10 @@ std::vector<Payload> Obstacles(const Inputs& inputs, double share, std::mt19937&
     } else {
       bus.Publish(bus::kPose, inputs.poses[pose++]);
     }
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
   }
   service.Finish();
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   return obstacles;
 }
 

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "common/core/angles.hpp"
 #include "common/core/geodesy.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/common/late_arrivals.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
@@ -94,8 +94,7 @@ Run Play(const World& world, microseconds period, microseconds duration) {
       service.OnStream(world.host(now), ToBytes(text), kTcp);
     }
     service.AdvanceTo(world.host(now));
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
     if (now >= next_health) {
       run.health.push_back({now, service.Report().reason});
       next_health += 500ms;

@@ -6,11 +6,11 @@
 #include <set>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -38,10 +38,7 @@ void Collect(bus::MemoryBus& bus, Sent& sent) {
   bus.SubscribeAll([&sent](std::string_view channel, Bytes bytes) { sent[std::string(channel)].emplace_back(bytes.begin(), bytes.end()); });
 }
 
-void Drain(bus::MemoryBus& bus) {
-  while (bus.HandleOnce()) {
-  }
-}
+void Drain(bus::MemoryBus& bus) { support::HandleAll(bus); }
 
 // Half a minute of a boat whose sentences come late, twice, out of order and damaged, whose clock is set back, and which sleeps for a while.
 Sent RunFromOutside(unsigned seed) {

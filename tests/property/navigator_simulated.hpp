@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
 #include "lab/sim/motion.hpp"
@@ -16,6 +15,7 @@
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/sim/scenes.hpp"
 
 namespace lookout::navigator {
@@ -96,8 +96,7 @@ inline SimulatedRun Simulate(const std::string& scene_name, std::uint64_t seed, 
     for (; datagram != waiting.end() && datagram->time <= now; ++datagram) {
       service.AdvanceTo(datagram->time);
       if (datagram->port == navigation_params.nmea_port) service.OnDatagram(datagram->time, datagram->payload);
-      while (bus.HandleOnce()) {
-      }
+      support::HandleAll(bus);
     }
     waiting.erase(waiting.begin(), datagram);
     if (ToSeconds(now - kSimulatedStart) >= next_report_s) {
@@ -106,8 +105,7 @@ inline SimulatedRun Simulate(const std::string& scene_name, std::uint64_t seed, 
     }
   }
   service.Finish(kSimulatedStart + std::chrono::microseconds(std::llround(seconds * 1e6)));
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   for (const auto& counter : service.Report().counters) run.counters[std::string(counter.name)] = counter.count;
   run.nis_per_degree = service.navigator().filter().nis_sum() / static_cast<double>(service.navigator().filter().num_nis_degrees());
   return run;

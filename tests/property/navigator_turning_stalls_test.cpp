@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "common/core/angles.hpp"
 #include "common/core/geodesy.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator::turning {
@@ -166,8 +166,7 @@ Wrong Play(const Case& scene) {
       service.OnDatagram(NoonPlus(0) + next->delivery, ToBytes(next->text + "\r\n"), next->source);
     }
     service.AdvanceTo(NoonPlus(0) + now);
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
   }
   const auto report = service.Report();
   wrong.last_reason = report.reason;

@@ -6,16 +6,16 @@
 #include <random>
 #include <set>
 
-#include "common/bus/memory_bus.hpp"
 #include "services/segmenter/service.hpp"
 #include "services/segmenter/wire.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
 
 namespace lookout::segmenter {
 namespace {
 
-Scan Scene(std::uint64_t seed, const test::Shape& shape) {
+Scan LakeScene(std::uint64_t seed, const test::Shape& shape) {
   auto scan = test::EmptyScan(shape);
   test::Look(scan, test::Lake(seed), 0.05, seed);
   if (seed % 2 == 0) test::AddRain(scan, 300, seed);
@@ -60,7 +60,7 @@ Params Way(int image_columns, bool label_shadowed_returns = true) {
 TEST(SegmentScanLaw, LabelsDoNotDependOnWhereTheScanIsCut) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     for (const auto& params : {Params{}, Way(0), Way(512), Way(512, false), Way(1800)}) {
-      const auto scan = Scene(seed, {.num_columns = 900, .num_returns = 1 + static_cast<int>(seed % 2)});
+      const auto scan = LakeScene(seed, {.num_columns = 900, .num_returns = 1 + static_cast<int>(seed % 2)});
       auto label = SegmentScan(scan, params).label;
       for (const int num_columns : {1, 123, 450, 899}) {
         const auto rotated = SegmentScan(Rotated(scan, num_columns), params).label;
@@ -76,7 +76,7 @@ TEST(SegmentScanLaw, LabelsDoNotDependOnWhereTheScanIsCut) {
 
 TEST(SegmentScanLaw, AnImageWithAPixelPerColumnGivesWhatOwnColumnsGive) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const auto scan = Scene(seed, {.num_columns = 900});
+    const auto scan = LakeScene(seed, {.num_columns = 900});
     const auto own = SegmentScan(scan, Way(0));
     EXPECT_EQ(SegmentScan(scan, Way(900)).label, own.label) << "seed " << seed;
     EXPECT_EQ(SegmentScan(scan, Way(900, false)).label, own.label) << "seed " << seed;
@@ -86,7 +86,7 @@ TEST(SegmentScanLaw, AnImageWithAPixelPerColumnGivesWhatOwnColumnsGive) {
 TEST(SegmentScanLaw, EveryReturnHasALabelAndEverySegmentIsFiniteAndHoldsItsReturns) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     for (const auto& params : {Params{}, Way(0), Way(512), Way(512, false), Way(1024), Way(8192)}) {
-      const auto scan = Scene(seed, {.num_returns = 1 + static_cast<int>(seed % 2)});
+      const auto scan = LakeScene(seed, {.num_returns = 1 + static_cast<int>(seed % 2)});
       const auto segments = SegmentScan(scan, params);
       std::map<int, int> num_points;
       std::set<std::size_t> repeats;
@@ -123,7 +123,7 @@ TEST(SegmentScanLaw, EveryReturnHasALabelAndEverySegmentIsFiniteAndHoldsItsRetur
 TEST(SegmentScanLaw, AScanWhoseShotsAllRepeatThemselvesGivesTheSegmentsOfSingleReturn) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     for (const auto& params : {Params{}, Way(0), Way(512), Way(512, false), Way(1800)}) {
-      const auto single = Scene(seed, {.num_columns = 900});
+      const auto single = LakeScene(seed, {.num_columns = 900});
       auto dual = test::EmptyScan({.num_columns = 900, .num_returns = 2});
       std::mt19937_64 random(seed);
       for (std::size_t cell = 0; cell < single.num_cells(); ++cell) {
@@ -151,7 +151,7 @@ TEST(SegmentScanLaw, AScanWhoseShotsAllRepeatThemselvesGivesTheSegmentsOfSingleR
 
 TEST(SegmentScanLaw, SingleReturnDoesNotDependOnTheGapOfRepeats) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const auto scan = Scene(seed, {});
+    const auto scan = LakeScene(seed, {});
     auto params = Way(0);
     const auto segments = SegmentScan(scan, params);
     params.filter.max_repeat_gap_m = 10.0;
@@ -166,7 +166,7 @@ TEST(SegmentScanLaw, SingleReturnDoesNotDependOnTheGapOfRepeats) {
 
 TEST(SegmentScanLaw, LessIsJoinedWhereRulesAreStricter) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const auto scan = Scene(seed, {});
+    const auto scan = LakeScene(seed, {});
     std::size_t last = 0;
     for (const double e3_distance_m : {20.0, 5.0, 3.5, 1.0, 0.0}) {
       auto params = Way(0);
@@ -245,7 +245,7 @@ TEST(SegmenterServiceLaw, MessagesThatLieAreRefusedAndNothingElseHappens) {
   std::mt19937_64 random(kSeed);
   std::vector<lidar_scan_t> good;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    for (const auto& message : test::ScanMessages(Scene(seed, {.num_columns = 200}), static_cast<std::int64_t>(seed), static_cast<int>(seed))) {
+    for (const auto& message : test::ScanMessages(LakeScene(seed, {.num_columns = 200}), static_cast<std::int64_t>(seed), static_cast<int>(seed))) {
       good.push_back(message);
     }
   }
@@ -253,8 +253,7 @@ TEST(SegmenterServiceLaw, MessagesThatLieAreRefusedAndNothingElseHappens) {
     auto message = good[random() % good.size()];
     for (std::uint64_t spoils = random() % 3; spoils > 0; --spoils) Spoil(message, random);
     bus::Publish(bus, bus::kLidarScan, message);
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
   }
   std::map<std::string_view, std::int64_t> counts;
   for (const auto& counter : service.Report().counters) counts[counter.name] = counter.count;

@@ -16,7 +16,6 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "common/config/boat.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "lab/sim/simulation.hpp"
@@ -25,6 +24,7 @@
 #include "services/tracker/service.hpp"
 #include "services/tracker/wire.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout {
@@ -216,8 +216,7 @@ TEST(GuardZoneOfTheChain, RingsAheadOfAShoreThatWasAcknowledgedAlongside) {
     for (const auto* input : {&bus::kObstacles, &bus::kSegments, &bus::kLidarScan, &bus::kPose}) {
       if (channel == input->name) bus.Publish(*input, {bytes.begin(), bytes.end()});
     }
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
   });
   while (const auto datagram = simulation.Next()) chain.OnDatagram({datagram->time, datagram->port, datagram->payload});
   EXPECT_GT(num_acknowledged, 0);

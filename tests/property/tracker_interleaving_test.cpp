@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "services/tracker/service.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 
 namespace lookout::tracker {
@@ -119,12 +119,10 @@ Outputs OutputsOf(const Inputs& inputs, const std::array<double, 4>& shares, std
     if (sum == 0.0) break;
     const auto drawn = std::discrete_distribution<std::size_t>(weights.begin(), weights.end())(random);
     bus.Publish(*streams[drawn]->channel, streams[drawn]->messages[next[drawn]++]);
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
   }
   service.Finish();
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   return outputs;
 }
 

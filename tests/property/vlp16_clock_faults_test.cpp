@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const Utime kStart = Utime(1'781'532'600s);
+const Utime kBegin = Utime(1'781'532'600s);
 
 struct Seen {
   double time_s;  // of the scan's last shot on the host's clock, since the start
@@ -48,7 +48,7 @@ struct Run {
 // A lidar on a boat that lies still, nothing around it.
 Run Play(const std::vector<std::string>& faults, std::chrono::microseconds duration, TimeChoice choice = TimeChoice::kAuto) {
   sim::SimulationParams params;
-  params.start = kStart;
+  params.start = kBegin;
   params.duration = duration;
   for (const auto& fault : faults) params.faults.push_back(sim::ParseTimedFault(fault));
   const sim::Scene scene;
@@ -65,7 +65,7 @@ Run Play(const std::vector<std::string>& faults, std::chrono::microseconds durat
       },
       [](const SentenceOfLidar&) {});
   while (const auto datagram = simulation.Next()) {
-    now_s = ToSeconds(datagram->time - kStart);
+    now_s = ToSeconds(datagram->time - kBegin);
     if (datagram->port == params.data_port) decoder.OnDataPayload(datagram->time, datagram->payload);
     if (datagram->port == params.navigation.position_port) decoder.OnPositionPayload(datagram->time, datagram->payload);
   }
@@ -136,7 +136,7 @@ TEST(Vlp16ClockFaults, AWrongHourTurnsTheSensorTimeDownWhereTheHostIsThereToTell
   }
   const auto believed = Play({"wrong_hour:0:100:-4"}, 4s, TimeChoice::kSensor).Between(2.5, 4.0);
   ASSERT_FALSE(believed.empty());
-  EXPECT_NEAR(ToSeconds(believed.back().time - kStart), 4.0 - 4.0 * 3600.0, 1.0) << "asked to believe the sensor, it does";
+  EXPECT_NEAR(ToSeconds(believed.back().time - kBegin), 4.0 - 4.0 * 3600.0, 1.0) << "asked to believe the sensor, it does";
 }
 
 TEST(Vlp16ClockFaults, AnRmcThatIsASecondLateChangesNothing) {
@@ -167,7 +167,7 @@ TEST(Vlp16ClockFaults, ARestartedSensorIsSilentThenGoesThroughAllStates) {
   // By the host's clock until the lock: never elsewhere in time. A scan that the silence cut short is told of when it is over.
   for (const auto& seen : run.scans) {
     if (seen.scan.is_partial_end) continue;
-    EXPECT_NEAR(ToSeconds(seen.scan.end_time - kStart), seen.time_s, 0.01);
+    EXPECT_NEAR(ToSeconds(seen.scan.end_time - kBegin), seen.time_s, 0.01);
   }
 }
 

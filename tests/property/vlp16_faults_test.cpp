@@ -7,13 +7,14 @@
 #include <string_view>
 #include <tuple>
 
-#include "common/bus/memory_bus.hpp"
 #include "lab/sim/faulty_network.hpp"
 #include "lab/sim/simulation.hpp"
 #include "lab/sim/sinks.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/service.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
@@ -25,19 +26,14 @@ using namespace std::chrono_literals;
 
 const Utime kStart = Utime(1'781'532'600s);
 
-std::int64_t CountOf(const HealthReport& report, std::string_view name) {
-  const auto found = std::ranges::find(report.counters, name, &Counter::name);
-  return found != report.counters.end() ? found->count : -1;
-}
-
 void ExpectExactCounts(const Service& service, const sim::FaultTotals& totals) {
   const auto report = service.Report();
-  EXPECT_EQ(CountOf(report, "data_packets_whole"), totals.num_sent);
-  EXPECT_EQ(CountOf(report, "data_lost"), totals.num_dropped);
-  EXPECT_EQ(CountOf(report, "data_duplicate"), totals.num_doubled);
-  EXPECT_EQ(CountOf(report, "data_reordered"), totals.num_swapped);
+  EXPECT_EQ(support::CountOf(report, "data_packets_whole"), totals.num_sent);
+  EXPECT_EQ(support::CountOf(report, "data_lost"), totals.num_dropped);
+  EXPECT_EQ(support::CountOf(report, "data_duplicate"), totals.num_doubled);
+  EXPECT_EQ(support::CountOf(report, "data_reordered"), totals.num_swapped);
   for (const auto* name : {"data_late", "data_overlapping", "data_azimuth_disagrees", "sensor_restarts", "sensor_clock_steps"}) {
-    EXPECT_EQ(CountOf(report, name), 0) << name;
+    EXPECT_EQ(support::CountOf(report, name), 0) << name;
   }
 }
 
@@ -58,7 +54,7 @@ sim::FaultTotals FeedMinute(Service& service, bus::MemoryBus& bus, const sim::Fa
       {}, params, format::kDataPort, kStart, kStart + kDuration, seed);
   while (const auto datagram = network.Next()) {
     service.OnDatagram(datagram->time, datagram->port, datagram->payload);
-    while (bus.HandleOnce()) continue;
+    support::HandleAll(bus);
   }
   service.Finish(kStart + kDuration);
   return network.totals();
@@ -103,7 +99,7 @@ TEST(Vlp16Faults, AreCountedExactlyOutOfACapture) {
     while (const auto datagram = reader.Next()) {
       last_time = datagram->host_time;
       service.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload);
-      while (bus.HandleOnce()) continue;
+      support::HandleAll(bus);
     }
     service.Finish(last_time);
     EXPECT_GT(network.totals().num_dropped, 100);

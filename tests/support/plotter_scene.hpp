@@ -12,13 +12,13 @@
 #include "lookout/alerts_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/tracks_t.hpp"
+#include "tests/support/messages.hpp"
 
 namespace lookout::support {
 
 class PlotterScene {
  public:
-  static constexpr double kLatitudeDeg = 53.3;
-  static constexpr double kLongitudeDeg = -6.1;
+  static constexpr GeodeticPlace kPlace{53.3, -6.1, 0.0};
   static constexpr std::int64_t kScanUs = 100'000;
 
   explicit PlotterScene(bus::LcmBus& bus) : bus_(bus) {}
@@ -55,8 +55,9 @@ class PlotterScene {
     pose.utime_us = utime_us;
     pose.seq = pose_seq_++;
     pose.status = pose_t::STATUS_OK;
-    pose.datum_latitude_deg = pose.latitude_deg = kLatitudeDeg;
-    pose.datum_longitude_deg = pose.longitude_deg = kLongitudeDeg;
+    SetDatum(pose, kPlace);
+    pose.latitude_deg = kPlace.latitude_deg;
+    pose.longitude_deg = kPlace.longitude_deg;
     pose.velocity_map_mps[0] = 2.0;
     pose.heading_rad = 1.5;
     bus::Publish(bus_, bus::kPose, pose);
@@ -64,53 +65,37 @@ class PlotterScene {
 
   // On rings around the boat, half of them moving; in parts, as the tracker sends them.
   void SendTracks(std::int64_t end_utime_us) {
-    constexpr int kOfPart = 150;
-    const LocalFrame map({kLatitudeDeg, kLongitudeDeg, 0.0});
-    tracks_t part{};
-    part.utime_us = end_utime_us - kScanUs;
-    part.seq = seq_;
-    part.raw_seq = seq_;
-    part.end_utime_us = end_utime_us;
-    part.num_parts = std::max(1, (num_tracks + kOfPart - 1) / kOfPart);
-    part.begin_utime_us = 1'782'901'200'000'000;
-    part.datum_latitude_deg = kLatitudeDeg;
-    part.datum_longitude_deg = kLongitudeDeg;
-    part.num_scan_tracks = num_tracks;
-    for (; part.part_index < part.num_parts; ++part.part_index) {
-      part.tracks.clear();
-      for (int i = part.part_index * kOfPart; i < std::min(num_tracks, (part.part_index + 1) * kOfPart); ++i) {
-        const double range_m = 20.0 + i % 60;
-        const auto place = map.Reverse({range_m * std::sin(i), range_m * std::cos(i), 0.0});
-        track_t track{};
-        track.id = i + 1;
-        track.status = track_t::STATUS_CONFIRMED;
-        track.kind = track_t::KIND_BOAT;
-        track.first_utime_us = track.seen_utime_us = end_utime_us;
-        track.latitude_deg = place.latitude_deg;
-        track.longitude_deg = place.longitude_deg;
-        track.velocity_map_mps[0] = i % 2 == 0 ? 1.0 : 0.0;
-        track.length_m = 4.0F;
-        track.width_m = 2.0F;
-        track.distance_m = static_cast<float>(range_m) - 2.0F;
-        track.cpa_m = 15.0F;
-        track.num_outline = 12;
-        track.outline_east_m.assign(12, 1.0F);
-        track.outline_north_m.assign(12, 1.0F);
-        part.tracks.push_back(track);
-      }
-      part.num_tracks = static_cast<std::int32_t>(part.tracks.size());
-      bus::Publish(bus_, bus::kTracks, part);
+    const LocalFrame map(kPlace);
+    auto message = OfScan<tracks_t>(end_utime_us - kScanUs, seq_, kScanUs);
+    message.begin_utime_us = 1'782'901'200'000'000;
+    SetDatum(message, kPlace);
+    std::vector<track_t> tracks(static_cast<std::size_t>(num_tracks));
+    for (int i = 0; i < num_tracks; ++i) {
+      const double range_m = 20.0 + i % 60;
+      const auto place = map.Reverse({range_m * std::sin(i), range_m * std::cos(i), 0.0});
+      auto& track = tracks[static_cast<std::size_t>(i)];
+      track.id = i + 1;
+      track.status = track_t::STATUS_CONFIRMED;
+      track.kind = track_t::KIND_BOAT;
+      track.first_utime_us = track.seen_utime_us = end_utime_us;
+      track.latitude_deg = place.latitude_deg;
+      track.longitude_deg = place.longitude_deg;
+      track.velocity_map_mps[0] = i % 2 == 0 ? 1.0 : 0.0;
+      track.length_m = 4.0F;
+      track.width_m = 2.0F;
+      track.distance_m = static_cast<float>(range_m) - 2.0F;
+      track.cpa_m = 15.0F;
+      track.num_outline = 12;
+      track.outline_east_m.assign(12, 1.0F);
+      track.outline_north_m.assign(12, 1.0F);
     }
+    Fill(message, std::move(tracks));
+    for (const auto& part : InParts(message, 150)) bus::Publish(bus_, bus::kTracks, part);
   }
 
   void SendAlerts(std::int64_t end_utime_us) {
-    alerts_t message{};
-    message.utime_us = end_utime_us - kScanUs;
-    message.seq = seq_;
-    message.raw_seq = seq_;
-    message.end_utime_us = end_utime_us;
-    message.num_alerts = static_cast<std::int32_t>(alerts.size());
-    message.alerts = alerts;
+    auto message = OfScan<alerts_t>(end_utime_us - kScanUs, seq_, kScanUs);
+    Fill(message, alerts);
     bus::Publish(bus_, bus::kAlerts, message);
   }
 

@@ -10,6 +10,7 @@
 #include "lookout/health_t.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/live_bus.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 
 namespace lookout::system_test {
@@ -23,10 +24,10 @@ namespace messages = tracker::test;
 
 class Alarm : public ::testing::Test {
  protected:
-  Alarm() : bus_(bus::DefaultLcmUrl()) {
-    bus_.SubscribeRaw(bus::kHealth, [this](std::string_view, Bytes bytes) { reports_.push_back(bus::Decode<health_t>(bytes).value()); });
-    bus_.SubscribeRaw(bus::kAlerts, [this](std::string_view, Bytes bytes) {
-      alerts_.push_back(bus::Decode<alerts_t>(bytes).value());
+  Alarm() {
+    bus::Subscribe<health_t>(bus_, bus::kHealth, [this](const health_t& message) { reports_.push_back(message); });
+    bus::Subscribe<alerts_t>(bus_, bus::kAlerts, [this](const alerts_t& message) {
+      alerts_.push_back(message);
       alerts_time_ = Clock::now();
     });
   }
@@ -50,17 +51,9 @@ class Alarm : public ::testing::Test {
   // Sends a scan every 100 ms where asked to, until it is so.
   template <typename Condition>
   bool Until(const Condition& is_so, bool has_scans, bool has_obstacle = false) {
-    const auto deadline = Clock::now() + seconds(30);
-    auto next_scan = Clock::now();
-    while (Clock::now() < deadline) {
-      if (has_scans && Clock::now() >= next_scan) {
-        next_scan += milliseconds(100);
-        SendScan(has_obstacle);
-      }
-      bus_.HandleOnce(milliseconds(10));
-      if (is_so()) return true;
-    }
-    return false;
+    return SendUntil(bus_, is_so, [&] {
+      if (has_scans) SendScan(has_obstacle);
+    });
   }
 
   bool IsReported(const std::string& piece) const { return !reports_.empty() && reports_.back().reason.find(piece) != std::string::npos; }
@@ -70,7 +63,7 @@ class Alarm : public ::testing::Test {
     });
   }
 
-  bus::LcmBus bus_;
+  bus::LcmBus bus_{bus::DefaultLcmUrl()};
   std::vector<health_t> reports_;
   std::vector<alerts_t> alerts_;
   Clock::time_point alerts_time_;

@@ -29,7 +29,9 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/support/live_test.hpp"
+#include "tests/support/socket.hpp"
 #include "tests/system/lcm_datagrams.hpp"
 
 namespace lookout::system_test {
@@ -44,55 +46,29 @@ constexpr const char* kGroup = "239.255.76.67";
 constexpr std::uint16_t kPort = 7667;
 const std::vector<std::string> kServices = bus::StartOrder();
 
-sockaddr_in Address(const std::string& address) {
-  sockaddr_in result{};
-  result.sin_family = AF_INET;
-  result.sin_port = htons(kPort);
-  inet_pton(AF_INET, address.c_str(), &result.sin_addr);
-  return result;
-}
-
 class Sender {
  public:
-  Sender() : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    const int yes = 1;
-    setsockopt(descriptor_, SOL_SOCKET, SO_BROADCAST, &yes, sizeof yes);
-  }
-  ~Sender() { close(descriptor_); }
-  Sender(const Sender&) = delete;
-  Sender& operator=(const Sender&) = delete;
-
-  bool Send(const Datagram& datagram, const std::string& to = kGroup) const {
-    const auto address = Address(to);
-    return sendto(descriptor_, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof address) ==
-           static_cast<ssize_t>(datagram.size());
-  }
+  Sender() { socket_.Set(SO_BROADCAST, 1); }
+  bool Send(const Datagram& datagram, const std::string& to = kGroup) const { return socket_.SendTo(Ipv4(to, kPort), datagram); }
 
  private:
-  int descriptor_;
+  Socket socket_{SOCK_DGRAM};
 };
 
 // HEALTH of all processes, without LCM.
 class HealthListener {
  public:
-  HealthListener() : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
-    const int yes = 1;
-    setsockopt(descriptor_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    const auto address = Address(kGroup);
-    if (bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) std::abort();
-    ip_mreq request{};
-    request.imr_multiaddr = address.sin_addr;
-    setsockopt(descriptor_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request);
+  HealthListener() {
+    if (!socket_.Bind(kPort, kGroup)) std::abort();
+    const ip_mreq request{Ipv4(kGroup, kPort).sin_addr, {}};
+    setsockopt(socket_.descriptor(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request);
   }
-  ~HealthListener() { close(descriptor_); }
-  HealthListener(const HealthListener&) = delete;
-  HealthListener& operator=(const HealthListener&) = delete;
 
   // Takes what has come.
   void Listen() {
     std::array<std::uint8_t, 65536> buffer;
     for (;;) {
-      const auto size = recv(descriptor_, buffer.data(), buffer.size(), 0);
+      const auto size = recv(socket_.descriptor(), buffer.data(), buffer.size(), MSG_DONTWAIT);
       if (size < 0) return;
       constexpr std::string_view kName("HEALTH\0", 7);
       const std::string_view text(reinterpret_cast<const char*>(buffer.data()), static_cast<std::size_t>(size));
@@ -105,15 +81,8 @@ class HealthListener {
   std::map<std::string, health_t> latest;
 
  private:
-  int descriptor_;
+  Socket socket_{SOCK_DGRAM};
 };
-
-std::int64_t CounterOf(const health_t& health, const std::string& name) {
-  for (const auto& counter : health.counters) {
-    if (counter.name == name) return counter.count;
-  }
-  return -1;
-}
 
 class BusGuard : public LiveTest {
  protected:
@@ -169,7 +138,7 @@ TEST_F(BusGuard, NoDatagramEndsAProcess) {
   ExpectAllHeard(listener);
   for (const auto& service : kServices) {
     if (service == "vlp16") continue;  // reads nothing from the bus
-    EXPECT_GE(CounterOf(listener.latest[service], "datagrams_dropped"), static_cast<std::int64_t>(HostileDatagrams().size()) - 1) << service;
+    EXPECT_GE(support::CountOf(listener.latest[service], "datagrams_dropped"), static_cast<std::int64_t>(HostileDatagrams().size()) - 1) << service;
   }
   ExpectAllRunning("all of them");
   EndAll();
@@ -226,7 +195,7 @@ TEST_F(BusGuard, MutatedDatagramsEndNoProcess) {
   ExpectAllHeard(listener);
   ExpectAllRunning("all mutated datagrams");
   for (const auto& service : kServices) {
-    std::cout << service << ": " << CounterOf(listener.latest[service], "datagrams_dropped") << " dropped, resident "
+    std::cout << service << ": " << support::CountOf(listener.latest[service], "datagrams_dropped") << " dropped, resident "
               << listener.latest[service].resident_bytes / 1'000'000 << " MB\n";
   }
   EndAll();
@@ -338,8 +307,9 @@ TEST_F(BusOnACable, WithATimeToLiveOf0OnlyThisComputerIsHeardWhateverItsAddress)
   const auto before = Heard(listener);
   for (const char* to : {kGroup, "10.76.0.1", "10.76.0.255"}) SendFromOutside(to);
   const auto after = Heard(listener);
-  EXPECT_EQ(CounterOf(after, "unknown_channel"), 0) << "datagrams of another computer were taken";
-  EXPECT_GE(CounterOf(after, "datagrams_dropped"), CounterOf(before, "datagrams_dropped") + 40) << "the test's datagrams did not arrive";
+  EXPECT_EQ(support::CountOf(after, "unknown_channel"), 0) << "datagrams of another computer were taken";
+  EXPECT_GE(support::CountOf(after, "datagrams_dropped"), support::CountOf(before, "datagrams_dropped") + 40)
+      << "the test's datagrams did not arrive";
   EXPECT_GT(NumHealth(after), NumHealth(before)) << "own messages are no longer taken";
 
   // A new lease: this computer has another address, and the other one takes the old.
@@ -349,12 +319,12 @@ TEST_F(BusOnACable, WithATimeToLiveOf0OnlyThisComputerIsHeardWhateverItsAddress)
   OnSecond("ip addr del 10.76.0.2/24 dev cable2 && ip addr add 10.76.0.1/24 dev cable2 && ip route replace 239.255.76.0/24 dev cable2");
   SendFromOutside(kGroup);
   const auto moved = Heard(listener);
-  EXPECT_EQ(CounterOf(moved, "unknown_channel"), 0);
-  EXPECT_GE(CounterOf(moved, "datagrams_dropped"), CounterOf(after, "datagrams_dropped") + 20);
+  EXPECT_EQ(support::CountOf(moved, "unknown_channel"), 0);
+  EXPECT_GE(support::CountOf(moved, "datagrams_dropped"), support::CountOf(after, "datagrams_dropped") + 20);
   EXPECT_GE(NumHealth(moved), NumHealth(after) + 2) << "own messages are no longer taken";
   const Sender own;
   for (int i = 0; i < 10; ++i) own.Send(ShortDatagram(1, Named("OWN"), 1));
-  EXPECT_EQ(CounterOf(Heard(listener), "unknown_channel"), 10);
+  EXPECT_EQ(support::CountOf(Heard(listener), "unknown_channel"), 10);
   EndAll();
 }
 
@@ -363,13 +333,13 @@ TEST_F(BusOnACable, WithATimeToLiveOf1TheOtherComputerIsHeardOnTheGroupAlone) {
   HealthListener listener;
   StartTwo(listener);
   for (const char* to : {"10.76.0.1", "10.76.0.255"}) SendFromOutside(to);
-  EXPECT_EQ(CounterOf(Heard(listener), "unknown_channel"), 0) << "datagrams were taken that were not sent to the group";
+  EXPECT_EQ(support::CountOf(Heard(listener), "unknown_channel"), 0) << "datagrams were taken that were not sent to the group";
   SendFromOutside(kGroup);
-  EXPECT_EQ(CounterOf(Heard(listener), "unknown_channel"), 20);
+  EXPECT_EQ(support::CountOf(Heard(listener), "unknown_channel"), 20);
   for (const auto& hostile : HostileDatagrams()) {
     for (const char* to : {kGroup, "10.76.0.1", "10.76.0.255"}) outside_->Send(hostile.datagram, to);
   }
-  EXPECT_EQ(CounterOf(Heard(listener), "unknown_channel"), 20);
+  EXPECT_EQ(support::CountOf(Heard(listener), "unknown_channel"), 20);
   ExpectAllRunning("hostile datagrams of another computer");
   EndAll();
 }

@@ -25,7 +25,9 @@
 #include "common/core/utime.hpp"
 #include "lookout/health_t.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/socket.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::system_test {
@@ -81,12 +83,6 @@ class LiveVlp16 {
   std::optional<Child> process_;
 };
 
-/// @return -1 when there is no such counter
-inline std::int64_t CounterOf(const health_t& health, std::string_view name) {
-  const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
-  return found != health.counters.end() ? found->count : -1;
-}
-
 /// What the counters of a lookout-vlp16 must be when so many different packets came, each once and in order.
 inline std::vector<std::pair<std::string_view, std::int64_t>> CountersOfACleanRun(std::int64_t num_sent) {
   return {{"data_packets_whole", num_sent},
@@ -114,12 +110,8 @@ struct SendResult {
 /// @param poll  called after each thousandth packet
 inline SendResult SendDataPackets(double packets_per_s, double seconds, const std::function<void()>& poll) {
   constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(vlp16::format::kDataPort);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-
+  const auto address = support::Ipv4("127.0.0.1", vlp16::format::kDataPort);
+  const support::Socket sender(SOCK_DGRAM);
   vlp16::test::SpinningSensor sensor;
   SendResult result;
   timespec now{};
@@ -133,11 +125,9 @@ inline SendResult SendDataPackets(double packets_per_s, double seconds, const st
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) continue;
     clock_gettime(CLOCK_MONOTONIC, &now);
     result.latest = std::max(result.latest, std::chrono::nanoseconds(now.tv_sec * kNanosecondsPerSecond + now.tv_nsec - due_ns));
-    const auto size = sendto(sender, payload.data(), payload.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
-    ++(size == static_cast<ssize_t>(payload.size()) ? result.num_sent : result.num_refused);
+    ++(sender.SendTo(address, payload) ? result.num_sent : result.num_refused);
     if (i % 1000 == 999) poll();
   }
-  close(sender);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <regex>
 
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::system_test {
@@ -23,7 +24,7 @@ TEST_F(Ingestion, TakesEveryPacketOfALidarOnce) {
   EXPECT_EQ(sent.num_sent, 3770);
   const auto health = vlp16.HealthAtRest();
   ASSERT_TRUE(health);
-  for (const auto& [name, expected] : CountersOfACleanRun(sent.num_sent)) EXPECT_EQ(CounterOf(*health, name), expected) << name;
+  for (const auto& [name, expected] : CountersOfACleanRun(sent.num_sent)) EXPECT_EQ(support::CountOf(*health, name), expected) << name;
 }
 
 TEST_F(Ingestion, CountsWhatTheNetworkDid) {
@@ -43,13 +44,13 @@ TEST_F(Ingestion, CountsWhatTheNetworkDid) {
   EXPECT_GT(total(3), 100);
   EXPECT_GT(total(4), 40);
   EXPECT_GT(total(5), 40);
-  EXPECT_EQ(CounterOf(*health, "data_kernel_drops"), 0);
-  EXPECT_EQ(CounterOf(*health, "data_packets_whole"), total(2));
-  EXPECT_EQ(CounterOf(*health, "data_lost"), total(3));
-  EXPECT_EQ(CounterOf(*health, "data_duplicate"), total(4));
-  EXPECT_EQ(CounterOf(*health, "data_reordered"), total(5));
+  EXPECT_EQ(support::CountOf(*health, "data_kernel_drops"), 0);
+  EXPECT_EQ(support::CountOf(*health, "data_packets_whole"), total(2));
+  EXPECT_EQ(support::CountOf(*health, "data_lost"), total(3));
+  EXPECT_EQ(support::CountOf(*health, "data_duplicate"), total(4));
+  EXPECT_EQ(support::CountOf(*health, "data_reordered"), total(5));
   for (const auto* name : {"data_late", "data_overlapping", "data_azimuth_disagrees", "sensor_restarts", "sensor_clock_steps"}) {
-    EXPECT_EQ(CounterOf(*health, name), 0) << name;
+    EXPECT_EQ(support::CountOf(*health, name), 0) << name;
   }
 }
 

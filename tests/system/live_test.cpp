@@ -19,6 +19,7 @@
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/segments_t.hpp"
+#include "tests/support/live_bus.hpp"
 
 namespace lookout::system_test {
 namespace {
@@ -76,9 +77,7 @@ class Live : public LiveTest {
 bool WaitFor(bus::LcmBus& bus, const bus::Channel& channel, std::int64_t num_more) {
   const auto count = [&] { return bus.input_traffic()[std::string(channel.name)].num_messages; };
   const auto goal = count() + num_more;
-  const auto deadline = std::chrono::steady_clock::now() + seconds(30);
-  while (count() < goal && std::chrono::steady_clock::now() < deadline) bus.HandleOnce(milliseconds(50));
-  return count() >= goal;
+  return HandleUntil(bus, [&] { return count() >= goal; });
 }
 
 TEST_F(Live, AKilledSegmenterComesBackAndTheOthersGoOn) {

@@ -6,63 +6,28 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "common/bus/lcm_bus.hpp"
-#include "lookout/alert_ack_t.hpp"
-#include "lookout/health_t.hpp"
-#include "tests/support/child.hpp"
-#include "tests/support/files.hpp"
+#include "tests/support/live_scene.hpp"
 #include "tests/support/page_browser.hpp"
-#include "tests/support/plotter_scene.hpp"
 
 namespace lookout::system_test {
 namespace {
 
 using namespace support;
-using Clock = std::chrono::steady_clock;
-using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr int kPort = 7668;
 const std::string kToken = "0123456789abcdef0123456789abcdef";
 
-class Page : public ::testing::Test {
+class Page : public LiveScene {
  protected:
-  Page() : bus_(bus::DefaultLcmUrl()), scene_(bus_), browser_(kPort) {
-    std::filesystem::copy(kDemoConfig, folder_ / "config");
+  Page() {
     std::ofstream(folder_ / "config/page.txtpb") << "token_file: 'token' look_back_folder: 'spool'\n";
     std::ofstream(folder_ / "config/token") << kToken << "\n";
     std::filesystem::permissions(folder_ / "config/token", std::filesystem::perms::owner_read);
-    bus_.SubscribeRaw(bus::kHealth, [this](std::string_view, Bytes bytes) { health_ = bus::Decode<health_t>(bytes).value(); });
-    bus_.SubscribeRaw(bus::kAlertAck, [this](std::string_view, Bytes bytes) { acknowledged_.push_back(bus::Decode<alert_ack_t>(bytes).value()); });
-    child_ = std::make_unique<Child>(std::vector<std::string>{Bin("page"), "--config", (folder_ / "config").string()}, (folder_ / "out").string());
+    Start("page");
   }
 
-  // A scan every 100 ms, until it is so.
-  template <typename Condition>
-  bool Until(const Condition& is_so, seconds longest = seconds(30)) {
-    const auto deadline = Clock::now() + longest;
-    auto next_scan = Clock::now();
-    while (Clock::now() < deadline) {
-      if (Clock::now() >= next_scan) {
-        next_scan += milliseconds(100);
-        scene_.SendScan();
-      }
-      bus_.HandleOnce(milliseconds(5));
-      if (is_so()) return true;
-    }
-    return false;
-  }
-  bool Runs() {
-    return Until([this] { return health_.pid != 0; });
-  }
-
-  TempDir folder_;
-  bus::LcmBus bus_;
-  PlotterScene scene_;
-  PageBrowser browser_;
-  health_t health_{};
-  std::vector<alert_ack_t> acknowledged_;
-  std::unique_ptr<Child> child_;
+  PageBrowser browser_{kPort};
 };
 
 TEST_F(Page, ServesItsFilesToWhoAsksForIt) {

@@ -11,13 +11,10 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "common/bus/lcm_bus.hpp"
-#include "lookout/alert_ack_t.hpp"
-#include "lookout/health_t.hpp"
 #include "services/plotter/core/nmea0183.hpp"
-#include "tests/support/child.hpp"
-#include "tests/support/files.hpp"
-#include "tests/support/plotter_scene.hpp"
+#include "tests/support/counters.hpp"
+#include "tests/support/live_scene.hpp"
+#include "tests/support/socket.hpp"
 
 namespace lookout::system_test {
 namespace {
@@ -34,34 +31,17 @@ constexpr int kSignalKPort = 10113;
 // Reads what comes over a socket, when asked.
 class Receiver {
  public:
-  explicit Receiver(int type, int receive_buffer_bytes = 0, int tcp_port = kTcpPort) : socket_(socket(AF_INET, type | SOCK_NONBLOCK, 0)) {
-    if (receive_buffer_bytes > 0) setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes, sizeof(receive_buffer_bytes));
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    address.sin_port = htons(type == SOCK_STREAM ? tcp_port : kUdpPort);
-    const auto* generic = reinterpret_cast<const sockaddr*>(&address);
-    if (type == SOCK_STREAM) {
-      connect(socket_, generic, sizeof(address));
-    } else {
-      EXPECT_EQ(bind(socket_, generic, sizeof(address)), 0);
-    }
+  explicit Receiver(int type, int receive_buffer_bytes = 0, int tcp_port = kTcpPort) : socket_(type) {
+    if (receive_buffer_bytes > 0) socket_.Set(SO_RCVBUF, receive_buffer_bytes);
+    EXPECT_TRUE(type == SOCK_STREAM ? socket_.Connect(tcp_port) : socket_.Bind(kUdpPort));
   }
-  ~Receiver() { close(socket_); }
-  Receiver(const Receiver&) = delete;
-  Receiver& operator=(const Receiver&) = delete;
 
-  const std::string& Read() {
-    char buffer[65536];
-    for (ssize_t num_bytes = 0; (num_bytes = recv(socket_, buffer, sizeof(buffer), 0)) > 0;)
-      text_.append(buffer, static_cast<std::size_t>(num_bytes));
-    return text_;
-  }
+  const std::string& Read() { return text_ += socket_.Read(); }
   void Clear() { text_.clear(); }
-  void Write(const std::string& text) { EXPECT_EQ(send(socket_, text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size())); }
+  void Write(const std::string& text) { socket_.Write(text); }
 
  private:
-  int socket_;
+  Socket socket_;
   std::string text_;
 };
 
@@ -71,55 +51,17 @@ std::int64_t NumOf(const std::string& text, const std::string& piece) {
   return number;
 }
 
-class Plotter : public ::testing::Test {
+class Plotter : public LiveScene {
  protected:
-  Plotter() : bus_(bus::DefaultLcmUrl()), scene_(bus_) {
-    std::filesystem::copy(kDemoConfig, folder_ / "config");
+  Plotter() {
     std::ofstream(folder_ / "config/plotter.txtpb")
         << "output { name: 'tcp' format: NMEA0183 alerts: ALR takes_acknowledgements: true tcp_server { bind_address: '127.0.0.1' port: " << kTcpPort
         << " } }\noutput { name: 'udp' format: SIGNALK udp { address: '127.0.0.1' port: " << kUdpPort << " } }\n"
         << "output { name: 'sk' format: SIGNALK tcp_server { bind_address: '127.0.0.1' port: " << kSignalKPort << " } }\n"
         << "output { name: 'gone' format: N2K_YDEN tcp_client { address: '127.0.0.1' port: 9 } }\n";
-    bus_.SubscribeRaw(bus::kHealth, [this](std::string_view, Bytes bytes) { health_ = bus::Decode<health_t>(bytes).value(); });
-    bus_.SubscribeRaw(bus::kAlertAck, [this](std::string_view, Bytes bytes) { acknowledged_.push_back(bus::Decode<alert_ack_t>(bytes).value()); });
-    Start("out");
+    Start("plotter");
   }
-  void Start(const std::string& output) {
-    child_ =
-        std::make_unique<Child>(std::vector<std::string>{Bin("plotter"), "--config", (folder_ / "config").string()}, (folder_ / output).string());
-  }
-
-  // A scan every 100 ms, until it is so.
-  template <typename Condition>
-  bool Until(const Condition& is_so, seconds longest = seconds(30)) {
-    const auto deadline = Clock::now() + longest;
-    auto next_scan = Clock::now();
-    while (Clock::now() < deadline) {
-      if (Clock::now() >= next_scan) {
-        next_scan += milliseconds(100);
-        scene_.SendScan();
-      }
-      bus_.HandleOnce(milliseconds(5));
-      if (is_so()) return true;
-    }
-    return false;
-  }
-  bool Runs() {
-    return Until([this] { return health_.pid != 0; });
-  }
-  std::int64_t Count(const std::string& name) const {
-    for (const auto& counter : health_.counters) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
-  }
-
-  TempDir folder_;
-  bus::LcmBus bus_;
-  PlotterScene scene_;
-  health_t health_{};
-  std::vector<alert_ack_t> acknowledged_;
-  std::unique_ptr<Child> child_;
+  std::int64_t Count(const std::string& name) const { return CountOf(health_, name); }
 };
 
 TEST_F(Plotter, SendsToEachReceiverInItsLanguage) {
@@ -153,7 +95,7 @@ TEST_F(Plotter, WaitsForAPortThatIsTakenAndServesTheOthers) {
   ASSERT_EQ(bind(holder, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
   ASSERT_EQ(listen(holder, 8), 0);
   const auto first_pid = health_.pid;
-  Start("second");
+  Start("plotter", "second");
   const std::string taken = "output 'tcp': TCP server at 127.0.0.1 port 10111: the port is taken by ";
   ASSERT_TRUE(Until([&] { return health_.pid != first_pid && health_.reason.find(taken) != std::string::npos; })) << child_->Output();
   EXPECT_NE(health_.reason.find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << health_.reason;

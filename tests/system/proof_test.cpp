@@ -20,6 +20,7 @@
 #include "common/bus/log_file.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/tracks_t.hpp"
+#include "tests/support/live_bus.hpp"
 #include "tests/support/live_test.hpp"
 #include "tools/log/watch_alerts.hpp"
 
@@ -120,11 +121,7 @@ class Proof : public LiveTest {
     ASSERT_TRUE(HandleUntil([&] { return std::ranges::all_of(services, is_there); })) << "a process does not report";
   }
 
-  bool HandleUntil(const std::function<bool()>& is_done, seconds timeout = seconds(30)) {
-    const auto deadline = std::chrono::steady_clock::now() + timeout;
-    while (!is_done() && std::chrono::steady_clock::now() < deadline) lcm_->HandleOnce(milliseconds(50));
-    return is_done();
-  }
+  bool HandleUntil(const std::function<bool()>& is_done, seconds timeout = seconds(30)) { return support::HandleUntil(*lcm_, is_done, timeout); }
 
   // Ends each process once the bus has been silent (but for HEALTH) for a while: what it waits for is then with it.
   Payloads StopAndRead() {

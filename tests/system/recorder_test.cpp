@@ -23,7 +23,9 @@
 #include "lookout/health_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/live_bus.hpp"
 
 namespace lookout::system_test {
 namespace {
@@ -239,11 +241,7 @@ TEST_F(RecorderSystem, StopsBeforeTheDiskIsFullSaysSoAndGoesOnWhenThereIsRoom) {
   std::ofstream(logs_ / "ballast") << std::string(4'000'000, 'x');
   health_t health{};
   bus::Subscribe<health_t>(*bus_, bus::kHealth, [&](const health_t& message) { health = message; });
-  const auto wait_for = [&](std::int32_t state) {
-    const auto deadline = Clock::now() + seconds(20);
-    while (health.state != state && Clock::now() < deadline) bus_->HandleOnce(milliseconds(20));
-    return health.state == state;
-  };
+  const auto wait_for = [&](std::int32_t state) { return HandleUntil(*bus_, [&] { return health.state == state; }); };
   Start("reserve_bytes: 2000000");
   // More than there is room for.
   const bus::Channel filler{"FILLER", "", "", 1, 1, false, false};
@@ -279,24 +277,16 @@ TEST_F(RecorderSystem, SaysWhatBecameOfALogThatIsTouchedAndGoesOnInAnother) {
   health_t health{};
   bus::Subscribe<health_t>(*bus_, bus::kHealth, [&](const health_t& message) { health = message; });
   const auto wait_for = [&](const std::string& reason) {
-    const auto deadline = Clock::now() + seconds(20);
-    while (health.reason.find(reason) == std::string::npos && Clock::now() < deadline) bus_->HandleOnce(milliseconds(20));
-    return health.reason.find(reason) != std::string::npos;
+    return HandleUntil(*bus_, [&] { return health.reason.find(reason) != std::string::npos; });
   };
-  const auto count = [&](const std::string& name) {
-    const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
-    return found == health.counters.end() ? -1 : found->count;
-  };
+  const auto count = [&](const std::string& name) { return CountOf(health, name); };
   const auto is_followed = [&](std::size_t num_logs) { return WaitUntil([&] { return Logs().size() == num_logs; }); };
   Start();
   for (int i = 0; i < 100; ++i) Send();
   ASSERT_TRUE(WaitUntil([&] { return Recorded().size() == 100; }));
   const auto first = Logs().front();
   health.state = health_t::STATE_STARTING;
-  for (const auto deadline = Clock::now() + seconds(20); health.state != health_t::STATE_OK && Clock::now() < deadline;) {
-    bus_->HandleOnce(milliseconds(20));
-  }
-  ASSERT_EQ(health.state, health_t::STATE_OK) << health.reason;
+  ASSERT_TRUE(HandleUntil(*bus_, [&] { return health.state == health_t::STATE_OK; })) << health.reason;
 
   fs::rename(first, folder_ / "moved");
   EXPECT_TRUE(is_followed(1));

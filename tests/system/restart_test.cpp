@@ -17,6 +17,7 @@
 #include "common/bus/log_file.hpp"
 #include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
+#include "tests/support/live_bus.hpp"
 #include "tests/support/live_test.hpp"
 
 namespace lookout::system_test {
@@ -57,12 +58,7 @@ class Watch {
   /// Handles messages until `is_reached`, at most so long.
   template <typename Condition>
   bool Until(const Condition& is_reached, milliseconds most) {
-    const auto deadline = Clock::now() + most;
-    while (!is_reached()) {
-      if (Clock::now() > deadline) return false;
-      bus_.HandleOnce(milliseconds(20));
-    }
-    return true;
+    return HandleUntil(bus_, is_reached, most);
   }
 
   std::int64_t Count(const bus::Channel& channel) { return bus_.input_traffic()[std::string(channel.name)].num_messages; }

@@ -18,7 +18,10 @@
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/live_bus.hpp"
+#include "tests/support/socket.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::system_test {
@@ -36,20 +39,15 @@ using Payload = std::vector<std::uint8_t>;
 // Sends packets at the pace of a sensor from an address to another until it is destroyed.
 class Lidar {
  public:
-  Lidar(const std::string& from, const std::string& to) : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    inet_pton(AF_INET, from.c_str(), &address.sin_addr);
-    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_IF, &address.sin_addr, sizeof address.sin_addr);
-    address.sin_port = htons(2368);
-    inet_pton(AF_INET, to.c_str(), &address.sin_addr);
-    thread_ = std::thread([this, address] {
+  Lidar(const std::string& from, const std::string& to) {
+    EXPECT_TRUE(socket_.Bind(0, from));
+    const auto interface = support::Ipv4(from, 0).sin_addr;
+    setsockopt(socket_.descriptor(), IPPROTO_IP, IP_MULTICAST_IF, &interface, sizeof interface);
+    thread_ = std::thread([this, address = support::Ipv4(to, 2368)] {
       sensor::SpinningSensor source;
       auto next = std::chrono::steady_clock::now();
       while (!is_over_) {
-        const auto packet = source.Next();
-        sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+        socket_.SendTo(address, source.Next());
         next += source.period();
         std::this_thread::sleep_until(next);
       }
@@ -58,19 +56,14 @@ class Lidar {
   ~Lidar() {
     is_over_ = true;
     thread_.join();
-    close(socket_);
   }
   Lidar(const Lidar&) = delete;
   // From which it sends.
-  int port() const {
-    sockaddr_in address{};
-    socklen_t size = sizeof address;
-    return getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) == 0 ? ntohs(address.sin_port) : 0;
-  }
+  int port() const { return socket_.port(); }
   Lidar& operator=(const Lidar&) = delete;
 
  private:
-  int socket_;
+  support::Socket socket_{SOCK_DGRAM};
   std::atomic<bool> is_over_ = false;
   std::thread thread_;
 };
@@ -79,20 +72,13 @@ class Lidar {
 class Flood {
  public:
   // per_s 0 = as fast as it can
-  Flood(const std::string& from, double per_s) : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    inet_pton(AF_INET, from.c_str(), &address.sin_addr);
-    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    address.sin_port = htons(2368);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  Flood(const std::string& from, double per_s) {
+    EXPECT_TRUE(socket_.Bind(0, from) && socket_.Connect(2368));
     thread_ = std::thread([this, per_s] { Send(per_s); });
   }
   ~Flood() {
     is_over_ = true;
     thread_.join();
-    close(socket_);
   }
   Flood(const Flood&) = delete;
   Flood& operator=(const Flood&) = delete;
@@ -115,12 +101,12 @@ class Flood {
       if (per_s > 0 && num_sent > elapsed.count() * per_s) {
         std::this_thread::sleep_for(milliseconds(1));
       } else {
-        num_sent += std::max(0, sendmmsg(socket_, messages.data(), messages.size(), 0));
+        num_sent += std::max(0, sendmmsg(socket_.descriptor(), messages.data(), messages.size(), 0));
       }
     }
   }
 
-  int socket_;
+  support::Socket socket_{SOCK_DGRAM};
   std::atomic<bool> is_over_ = false;
   std::thread thread_;
 };
@@ -190,11 +176,7 @@ class SourcesTest : public ::testing::Test {
   }
   static int System(const std::string& command) { return std::system((command + " 2>/dev/null").c_str()); }
 
-  bool WaitUntil(const std::function<bool()>& is_true, seconds timeout = seconds(15)) {
-    const auto deadline = std::chrono::steady_clock::now() + timeout;
-    while (!is_true() && std::chrono::steady_clock::now() < deadline) bus_->HandleOnce(milliseconds(20));
-    return is_true();
-  }
+  bool WaitUntil(const std::function<bool()>& is_true, seconds timeout = seconds(15)) { return support::HandleUntil(*bus_, is_true, timeout); }
   bool WaitForScans(int count) {
     const int goal = num_scans_ + count;
     return WaitUntil([&] { return num_scans_ >= goal; });
@@ -208,12 +190,7 @@ class SourcesTest : public ::testing::Test {
     const auto since_us = std::chrono::duration_cast<std::chrono::microseconds>(system_clock::now().time_since_epoch()).count();
     return WaitUntil([&] { return health_.utime_us > since_us && health_.state == state; }, timeout);
   }
-  std::int64_t Counter(const std::string& name) const {
-    for (const auto& counter : health_.counters) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
-  }
+  std::int64_t Counter(const std::string& name) const { return support::CountOf(health_, name); }
 
   support::TempDir folder_;
   std::optional<bus::LcmBus> bus_;

@@ -16,6 +16,8 @@
 #include "common/bus/log_file.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "tests/support/counters.hpp"
+#include "tests/support/live_bus.hpp"
 #include "tests/support/live_test.hpp"
 
 namespace lookout::system_test {
@@ -66,9 +68,7 @@ class TwoComputers : public LiveTest {
 
   void LayCable() {
     second_ = std::make_unique<Child>(std::vector<std::string>{"unshare", "--net", "sleep", "300"}, Output("second"));
-    const auto deadline = std::chrono::steady_clock::now() + seconds(10);
-    while (!IsSecondReady() && second_->IsRunning() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(milliseconds(5));
-    ASSERT_TRUE(IsSecondReady()) << second_->Output();
+    ASSERT_TRUE(WaitUntil([this] { return IsSecondReady() || !second_->IsRunning(); }) && IsSecondReady()) << second_->Output();
     const auto second = std::to_string(second_->pid());
     Ip({"link", "add", "cable1", "type", "veth", "peer", "name", "cable2", "netns", second});
     Ip({"addr", "add", "10.76.0.1/24", "dev", "cable1"});
@@ -132,12 +132,6 @@ class TwoComputers : public LiveTest {
     }
     return -1;
   }
-  static std::int64_t CounterOf(const health_t& health, const std::string& name) {
-    for (const auto& counter : health.counters) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
-  }
 };
 
 void TwoComputers::LiveThroughAPulledCable(Out out) {
@@ -153,11 +147,7 @@ void TwoComputers::LiveThroughAPulledCable(Out out) {
   });
   bus::Subscribe<health_t>(lcm, bus::kHealth, [&](const health_t& message) { ++num_health[message.process]; });
   lcm.HandleOnce(milliseconds(0));  // joins LCM's group
-  const auto wait_until = [&](const auto& is_true) {
-    const auto deadline = std::chrono::steady_clock::now() + seconds(20);
-    while (!is_true() && std::chrono::steady_clock::now() < deadline) lcm.HandleOnce(milliseconds(50));
-    return is_true();
-  };
+  const auto wait_until = [&](const auto& is_true) { return HandleUntil(lcm, is_true); };
 
   for (const auto& service : on_second) Start(service, true);
   EXPECT_TRUE(wait_until([&] { return num_health.size() == on_second.size(); })) << "not all of the second computer are heard on the first";
@@ -198,14 +188,14 @@ void TwoComputers::LiveThroughAPulledCable(Out out) {
   const auto& segmenter = health["segmenter"].back();
   const auto& georeferencer = health["georeferencer"].back();
   std::cout << "cable out for " << kTurnsWithout << " turns: segmenter lost " << LostOn(segmenter, "LIDAR_SCAN") << " LIDAR_SCAN, georeferencer "
-            << LostOn(georeferencer, "POSE") << " POSE, recorder misses " << CounterOf(recorder, "raw_missing")
-            << " raw messages; not sent by the georeferencer: " << CounterOf(georeferencer, "messages_not_sent") << "\n";
+            << LostOn(georeferencer, "POSE") << " POSE, recorder misses " << support::CountOf(recorder, "raw_missing")
+            << " raw messages; not sent by the georeferencer: " << support::CountOf(georeferencer, "messages_not_sent") << "\n";
   // Ten turns, 50 POSE and some hundred raw messages go in a second; what was under way at either end of it may count or not.
   EXPECT_GE(LostOn(segmenter, "LIDAR_SCAN"), kTurnsWithout - 5);
   EXPECT_GE(LostOn(georeferencer, "POSE"), 5 * (kTurnsWithout - 5));
-  EXPECT_GE(CounterOf(recorder, "raw_missing"), kTurnsWithout);
+  EXPECT_GE(support::CountOf(recorder, "raw_missing"), kTurnsWithout);
   // Its route was gone with the interface: HEALTH at least.
-  EXPECT_GE(CounterOf(georeferencer, "messages_not_sent"), 1);
+  EXPECT_GE(support::CountOf(georeferencer, "messages_not_sent"), 1);
 }
 
 TEST_F(TwoComputers, APulledCableLosesWhatIsCountedAndAllGoesOnByItself) { LiveThroughAPulledCable(Out::kSecondsRoutes); }

@@ -28,14 +28,15 @@
 #include "common/bus/log_file.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "tests/support/live_bus.hpp"
 #include "tests/support/live_test.hpp"
+#include "tests/support/socket.hpp"
 
 namespace lookout::system_test {
 namespace {
 
 using namespace support;
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
@@ -70,11 +71,8 @@ class Talker {
     return text.data();
   }
   void Run(double latitude_deg, double longitude_deg) {
-    const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    sockaddr_in target{};
-    target.sin_family = AF_INET;
-    target.sin_port = htons(kOtherPort);
-    target.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const Socket socket(SOCK_DGRAM);
+    const auto target = Ipv4("127.0.0.1", kOtherPort);
     while (!is_over_) {
       const auto now = std::chrono::time_point_cast<milliseconds>(std::chrono::system_clock::now());
       const auto time = static_cast<std::time_t>(now.time_since_epoch().count() / 1000);
@@ -90,10 +88,9 @@ class Talker {
       const std::string place = Angle(latitude_deg, "%02d%09.6f,%c", 'N', 'S') + "," + Angle(longitude_deg, "%03d%09.6f,%c", 'E', 'W');
       const std::string text = Sentence("GPRMC," + utc_text + ",A," + place + ",0.0,0.0," + date.data() + ",,,A") +
                                Sentence("GPGGA," + utc_text + "," + place + ",4,12,0.7,10.0,M,0.0,M,,") + Sentence("HEHDT,90.0,T");
-      sendto(descriptor, text.data(), text.size(), 0, reinterpret_cast<const sockaddr*>(&target), sizeof target);
+      socket.SendTo(target, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
       std::this_thread::sleep_for(milliseconds(100));
     }
-    close(descriptor);
   }
   std::atomic<bool> is_over_{false};
   std::thread thread_;
@@ -136,11 +133,7 @@ class TwoPublishers : public LiveTest {
     }
   }
 
-  bool WaitUntil(const std::function<bool()>& is_true, milliseconds most = seconds(30)) {
-    const auto deadline = Clock::now() + most;
-    while (!is_true() && Clock::now() < deadline) lcm_->HandleOnce(milliseconds(20));
-    return is_true();
-  }
+  bool WaitUntil(const std::function<bool()>& is_true, milliseconds most = seconds(30)) { return HandleUntil(*lcm_, is_true, most); }
   void Start(const std::string& name, const std::string& program, const std::string& config) {
     children_[name] = std::make_unique<Child>(std::vector<std::string>{Bin(program), "--config", (folder_ / config).string()}, name + ".out");
   }

@@ -19,6 +19,7 @@
 
 #include "common/bus/guarded_bind.hpp"
 #include "common/bus/lcm_url.hpp"
+#include "tests/support/socket.hpp"
 #include "tests/system/lcm_datagrams.hpp"
 
 namespace lookout::bus {
@@ -72,26 +73,13 @@ bool IsSound(const Datagram& datagram) {
 class FilteredSocket {
  public:
   explicit FilteredSocket(DatagramPolicy policy, std::uint16_t port_of_policy = 0) {
-    receiver_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    const int size = 8 << 20;
-    setsockopt(receiver_, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
-    address_.sin_family = AF_INET;
-    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(bind(receiver_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_), 0);
-    socklen_t length = sizeof address_;
-    getsockname(receiver_, reinterpret_cast<sockaddr*>(&address_), &length);
-    policy.port = port_of_policy != 0 ? port_of_policy : ntohs(address_.sin_port);
+    receiver_.Set(SO_RCVBUF, 8 << 20);
+    EXPECT_TRUE(receiver_.Bind(0));
+    policy.port = port_of_policy != 0 ? port_of_policy : static_cast<std::uint16_t>(receiver_.port());
     auto program = DatagramFilter(policy);
     const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
-    EXPECT_EQ(setsockopt(receiver_, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter), 0) << "the kernel refuses the program";
-    sender_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    EXPECT_EQ(setsockopt(receiver_.descriptor(), SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter), 0) << "the kernel refuses the program";
   }
-  ~FilteredSocket() {
-    close(receiver_);
-    close(sender_);
-  }
-  FilteredSocket(const FilteredSocket&) = delete;
-  FilteredSocket& operator=(const FilteredSocket&) = delete;
 
   // Another datagram behind it says when it would have arrived.
   bool IsTaken(const Datagram& datagram) {
@@ -102,7 +90,7 @@ class FilteredSocket {
     Datagram received(65'536);
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     while (std::chrono::steady_clock::now() < deadline) {
-      const auto size = recv(receiver_, received.data(), received.size(), MSG_DONTWAIT);
+      const auto size = recv(receiver_.descriptor(), received.data(), received.size(), MSG_DONTWAIT);
       if (size < 0) {
         std::this_thread::yield();
         continue;
@@ -116,17 +104,13 @@ class FilteredSocket {
     return is_taken;
   }
 
-  int receiver() const { return receiver_; }
+  int receiver() const { return receiver_.descriptor(); }
 
-  void Send(const Datagram& datagram) const {
-    EXPECT_EQ(sendto(sender_, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&address_), sizeof address_),
-              static_cast<ssize_t>(datagram.size()));
-  }
+  void Send(const Datagram& datagram) const { EXPECT_TRUE(sender_.SendTo(support::Ipv4("127.0.0.1", receiver_.port()), datagram)); }
 
  private:
-  sockaddr_in address_{};
-  int receiver_ = -1;
-  int sender_ = -1;
+  support::Socket receiver_{SOCK_DGRAM};
+  support::Socket sender_{SOCK_DGRAM};
 };
 
 std::string Hex(const Datagram& datagram) {

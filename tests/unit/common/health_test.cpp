@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "common/bus/memory_bus.hpp"
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
+#include "tests/support/memory_bus.hpp"
 
 namespace lookout::runtime {
 namespace {
@@ -30,8 +30,7 @@ TEST(HealthReporter, TellsTrafficCountersAndTheMachine) {
     message.utime_us = 1'000'000;
     bus::Publish(bus, bus::kLidarNmea, message);
   }
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   HealthReporter reporter("test");
   const HealthReport report{HealthState::kDegraded, "no lidar", {{"bad_flag", 7}}};
   const auto message = reporter.Make(Utime(std::chrono::microseconds(1'300'000)), report, bus);
@@ -78,8 +77,7 @@ TEST(HealthReporter, TellsOfASecondPublisherForAMinuteAndKeepsTheCount) {
     message.seq = seq;
     message.utime_us = utime_us;
     bus::Publish(bus, bus::kLidarNmea, message);
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
   };
   const auto pass = [&](int num_tenths) {
     for (int i = 0; i < num_tenths; ++i) {
@@ -131,8 +129,7 @@ TEST(HealthReporter, SaysHowManyScansTheBusLost) {
     }
     now += std::chrono::milliseconds(100);
     bus.ReleaseHeld();
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
   }
   const auto message = reporter.Make(Utime(), {}, bus);
   EXPECT_EQ(message.state, health_t::STATE_DEGRADED);
@@ -147,8 +144,7 @@ TEST(HealthReporter, TellsBetweenTwoReportsWhatIsNewAndKeepsTheRates) {
   HealthReporter reporter("test");
   EXPECT_EQ(reporter.MakeBetween(Utime(), {}).num_channels, 0);
   bus::Publish(bus, bus::kLidarNmea, lidar_nmea_t{});
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   const auto whole = reporter.Make(Utime(std::chrono::microseconds(1'000'000)), {}, bus);
   const HealthReport alarmed{HealthState::kDegraded, "obstacle", {{"alarms", 1}}};
   const auto between = reporter.MakeBetween(Utime(std::chrono::microseconds(1'200'000)), alarmed);

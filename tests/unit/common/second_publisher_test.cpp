@@ -34,56 +34,53 @@ TEST_F(Stream, ASecondPublisherWithGreaterNumbersIsRefused) {
   EXPECT_EQ(num_lost_, 0);
 }
 
-// Two computers switched on at the same time: numbers a few apart.
-TEST_F(Stream, ASecondPublisherWithNearNumbersIsRefused) {
-  for (const std::int64_t ahead : {-3, -2, -1, 0, 2, 3, 5, 10, 30}) {
-    SCOPED_TRACE(ahead);
-    guard_ = StreamGuard(40.0);
+class StreamOfNearNumbers : public Stream {
+ protected:
+  void Begin(const StreamGuard& guard) {
+    guard_ = guard;
     taken_.clear();
     held_.clear();
+  }
+  // By turns of two publishers, whose numbers and clocks are so far ahead.
+  void ExpectFirstAlone(std::int64_t ahead, std::int64_t clock_us) {
+    Begin(StreamGuard(40.0));
     Run('a', 100, 20);
     for (std::int64_t i = 0; i < 50; ++i) {
       Send('a', 120 + i);
       Pass(milliseconds(50));
-      SendAt('b', 120 + i + ahead, (120 + i) * kPeriodUs + 30'000);
+      SendAt('b', 120 + i + ahead, (120 + i) * kPeriodUs + clock_us);
       Pass(milliseconds(50));
     }
     EXPECT_EQ(NumTaken('a'), 70);
     EXPECT_EQ(NumTaken('b'), 0);
     EXPECT_TRUE(HasSecond());
   }
+};
+
+// Two computers switched on at the same time: numbers a few apart.
+TEST_F(StreamOfNearNumbers, ASecondPublisherWithNearNumbersIsRefused) {
+  for (const std::int64_t ahead : {-3, -2, -1, 0, 2, 3, 5, 10, 30}) {
+    SCOPED_TRACE(ahead);
+    ExpectFirstAlone(ahead, 30'000);
+  }
 }
 
 // Two computers of one switch, without a common clock. The second was taken for good, and the first refused.
-TEST_F(Stream, ASecondPublisherWithNearNumbersWhoseClockIsFarAheadIsRefused) {
+TEST_F(StreamOfNearNumbers, ASecondPublisherWithNearNumbersWhoseClockIsFarAheadIsRefused) {
   for (const std::int64_t ahead : {2, 3, 6, 10, 20}) {
     for (const std::int64_t clock_us : {3'000'000, 3'900'000, 100'000'000}) {
       SCOPED_TRACE(std::to_string(ahead) + " " + std::to_string(clock_us));
-      guard_ = StreamGuard(40.0);
-      taken_.clear();
-      held_.clear();
-      Run('a', 100, 20);
-      for (std::int64_t i = 0; i < 50; ++i) {
-        Send('a', 120 + i);
-        Pass(milliseconds(50));
-        SendAt('b', 120 + i + ahead, (120 + i) * kPeriodUs + clock_us);
-        Pass(milliseconds(50));
-      }
-      EXPECT_EQ(NumTaken('a'), 70);
-      EXPECT_EQ(NumTaken('b'), 0);
-      EXPECT_TRUE(HasSecond());
+      ExpectFirstAlone(ahead, clock_us);
     }
   }
 }
 
 // Two navigators switched on within a tenth of a second: POSE of both comes for the same instants, five at once.
-TEST_F(Stream, ASecondPublisherOfTheSameInstantsWithNearNumbersIsRefused) {
+TEST_F(StreamOfNearNumbers, ASecondPublisherOfTheSameInstantsWithNearNumbersIsRefused) {
   for (const std::int64_t ahead : {-7, -5, -4, -2, -1, 1, 2, 3, 4, 5, 6, 8}) {
     for (const bool is_first : {false, true}) {
       SCOPED_TRACE(std::to_string(ahead) + (is_first ? " second first" : ""));
-      guard_ = StreamGuard(50.0, true);
-      taken_.clear();
-      held_.clear();
+      Begin(StreamGuard(50.0, true));
       for (std::int64_t seq = 100; seq < 150; ++seq) {
         SendAt('a', seq, seq * 20'000);
         if (seq % 5 == 4) Pass(milliseconds(100));

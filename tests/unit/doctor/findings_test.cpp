@@ -1,5 +1,5 @@
 // Judgements of lookout-doctor on the look-out, network, sensors and boat: ok, warning and fault.
-#include "common/bus/memory_bus.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/doctor/healthy.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 #include "tools/doctor/watch.hpp"
@@ -92,8 +92,7 @@ TEST(DoctorGuardZone, SaysWhereTheLidarDoesNotFire) {
   notes.ListenTo(bus, Via::kItself);
   for (int i = 0; i < 40; ++i) {
     bus::Publish(bus, bus::kLidarScan, tracker::test::MakeSweep(tracker::test::kScanUs * i, i, 90.0, 270.0));
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
   }
   EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kWarning, "no look-out in the whole guard zone: 300 to 60 deg (the lidar does not fire there)");
 }

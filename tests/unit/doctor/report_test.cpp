@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/bus/memory_bus.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "tests/support/bus_fixture.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/doctor/healthy.hpp"
 #include "tools/doctor/findings.hpp"
@@ -54,10 +54,9 @@ TEST(DoctorConfig, NamesEachWrongFileOnce) {
   EXPECT_TRUE(seen.log_folder.has_value());
 }
 
-class DoctorNotes : public ::testing::Test {
+class DoctorNotes : public support::BusTest {
  protected:
   Observations seen_;
-  bus::MemoryBus bus_;
   Utime now_ = kEnd;
   Notes notes_{seen_, [this] { return now_; }};
 
@@ -65,12 +64,6 @@ class DoctorNotes : public ::testing::Test {
     seen_.config.lidar.emplace();
     notes_.ListenTo(bus_, Via::kBus);
     notes_.ListenToProcesses(bus_);
-  }
-  template <typename T>
-  void Send(const bus::Channel& channel, const T& message) {
-    bus::Publish(bus_, channel, message);
-    while (bus_.HandleOnce()) {
-    }
   }
 };
 
@@ -128,8 +121,7 @@ TEST_F(DoctorNotes, TellProcessesApartByComputerAndId) {
 TEST_F(DoctorNotes, PassOverWhatCannotBeRead) {
   const std::vector<std::uint8_t> bytes(40, 0xFF);
   for (const auto& channel : bus::kChannels) bus_.Publish(channel, bytes);
-  while (bus_.HandleOnce()) {
-  }
+  HandleAll();
   EXPECT_TRUE(seen_.processes.empty());
   lidar_packets_t packets{};
   packets.num_packets = 1;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/core/frames.hpp"
+#include "tests/support/messages.hpp"
 #include "tests/unit/eval/truth_fixture.hpp"
 
 namespace lookout::eval {
@@ -13,24 +14,14 @@ constexpr std::int64_t kScanPeriodUs = 100'000;
 // Ten scans a second of 900 columns of two rings, all round of which a wall stands at `wall_m`.
 messages::ScanMessages ScanOf(int index, double wall_m, std::int64_t shift_us = 0) {
   messages::ScanMessages messages;
-  lidar_scan_t scan{};
-  scan.utime_us = kStartUs + index * kScanPeriodUs + shift_us;
-  scan.num_parts = 1;
-  scan.range_unit_m = 0.002;
-  scan.num_rings = 2;
-  scan.elevation_rad = {-0.1F, 0.0F};
-  scan.azimuth_offset_rad = {0.0F, 0.0F};
-  scan.time_offset_ns = {0, 2304};
-  scan.origin_height_m = {0.0F, 0.0F};
-  scan.num_returns = 1;
-  scan.num_columns = 900;
-  for (int column = 0; column < scan.num_columns; ++column) {
-    scan.azimuth_rad.push_back(static_cast<float>(column) * 0.00698F);
-    scan.time_ns.push_back(column * 111'000);
+  auto scan = support::OfScan<lidar_scan_t>(kStartUs + index * kScanPeriodUs + shift_us, 0, 0);
+  std::vector<float> azimuth_rad;
+  std::vector<std::int32_t> time_ns;
+  for (int column = 0; column < 900; ++column) {
+    azimuth_rad.push_back(static_cast<float>(column) * 0.00698F);
+    time_ns.push_back(column * 111'000);
   }
-  scan.num_cells = 1800;
-  scan.range.assign(1800, static_cast<std::int16_t>(wall_m / scan.range_unit_m));
-  scan.reflectivity.assign(1800, 7);
+  support::FillColumns(scan, azimuth_rad, time_ns, static_cast<std::int16_t>(wall_m / 0.002));
   messages.utime_us = scan.utime_us;
   messages.scans[0] = scan;
   return messages;

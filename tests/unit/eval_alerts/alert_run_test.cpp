@@ -12,6 +12,7 @@
 #include "lab/eval/tracks/track_sources.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/messages.hpp"
 #include "tests/unit/eval_tracks/track_cases.hpp"
 #include "tools/replay/chain.hpp"
 
@@ -52,30 +53,20 @@ Truth TruthOfOneBoat() {
 }
 
 tracks_t Tracks(std::int64_t utime_us, const Vector2d& position_m) {
-  tracks_t message{};
-  message.utime_us = utime_us;
-  message.end_utime_us = utime_us + kScanUs;
-  message.num_parts = 1;
-  message.datum_latitude_deg = kOrigin[0];
-  message.datum_longitude_deg = kOrigin[1];
-  message.datum_ellipsoid_height_m = kOrigin[2];
+  auto message = support::OfScan<tracks_t>(utime_us, 0, kScanUs);
+  support::SetDatum(message, {kOrigin[0], kOrigin[1], kOrigin[2]});
   track_t track{};
   track.id = 7;
   track.status = track_t::STATUS_CONFIRMED;
   track.position_map_m[0] = position_m.x();
   track.position_map_m[1] = position_m.y();
-  message.tracks.push_back(track);
-  message.num_tracks = 1;
-  message.num_scan_tracks = 1;
+  support::Fill(message, {track});
   return message;
 }
 
 alerts_t Alerts(std::int64_t utime_us, std::vector<alert_t> alerts) {
-  alerts_t message{};
-  message.utime_us = utime_us;
-  message.end_utime_us = utime_us + kScanUs;
-  message.alerts = std::move(alerts);
-  message.num_alerts = static_cast<std::int32_t>(message.alerts.size());
+  auto message = support::OfScan<alerts_t>(utime_us, 0, kScanUs);
+  support::Fill(message, std::move(alerts));
   return message;
 }
 

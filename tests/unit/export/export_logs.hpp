@@ -23,6 +23,7 @@
 #include "lookout/segments_t.hpp"
 #include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/messages.hpp"
 #include "tools/export/export.hpp"
 
 namespace lookout::exporter {
@@ -33,50 +34,23 @@ inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Two rings (-15 and 0 degrees), `num_columns` columns 90 degrees apart from azimuth 0, single return; a scan of 0.1 s in one part.
 /// Every range is 5000 counts (10 m), every reflectivity 7.
 inline lidar_scan_t MakeScan(std::int64_t seq, int num_columns = 2, int first_column = 0) {
-  lidar_scan_t scan{};
-  scan.utime_us = kStartUs + 100'000 * seq;
-  scan.seq = seq;
-  scan.end_utime_us = scan.utime_us + 99'999;
-  scan.num_parts = 1;
+  auto scan = support::OfScan<lidar_scan_t>(kStartUs + 100'000 * seq, seq, 99'999);
+  std::vector<float> azimuth_rad;
+  std::vector<std::int32_t> time_ns;
+  for (int column = first_column; column < first_column + num_columns; ++column) {
+    azimuth_rad.push_back(static_cast<float>(column % 4) * 1.57079633F);
+    time_ns.push_back(column * 55'296);
+  }
+  support::FillColumns(scan, azimuth_rad, time_ns, 5000);
   scan.time_source = lidar_scan_t::TIME_SENSOR;
   scan.model = "VLP-16";
-  scan.range_unit_m = 0.002;
-  scan.num_rings = 2;
   scan.elevation_rad = {static_cast<float>(-15.0 * 3.14159265358979 / 180.0), 0.0F};
-  scan.azimuth_offset_rad = {0.0F, 0.0F};
-  scan.time_offset_ns = {0, 2304};
-  scan.origin_height_m = {0.0F, 0.0F};
-  scan.num_returns = 1;
-  scan.return_kind = {lidar_scan_t::RETURN_STRONGEST};
-  scan.num_turn_columns = num_columns;
   scan.first_column = first_column;
-  scan.num_columns = num_columns;
-  for (int column = 0; column < num_columns; ++column) {
-    scan.azimuth_rad.push_back(static_cast<float>((first_column + column) % 4) * 1.57079633F);
-    scan.time_ns.push_back((first_column + column) * 55'296);
-  }
-  scan.num_cells = num_columns * 2;
-  scan.range.assign(static_cast<std::size_t>(scan.num_cells), 5000);
-  scan.reflectivity.assign(static_cast<std::size_t>(scan.num_cells), 7);
   return scan;
 }
 
 /// SEGMENTS of a scan: every cell has `label`, no segment.
-inline segments_t MakeSegments(const lidar_scan_t& scan, std::int16_t label = 1) {
-  segments_t segments{};
-  segments.utime_us = scan.utime_us;
-  segments.seq = scan.seq;
-  segments.end_utime_us = scan.end_utime_us;
-  segments.part_index = scan.part_index;
-  segments.num_parts = scan.num_parts;
-  segments.num_rings = scan.num_rings;
-  segments.num_returns = scan.num_returns;
-  segments.first_column = scan.first_column;
-  segments.num_columns = scan.num_columns;
-  segments.num_cells = scan.num_cells;
-  segments.label.assign(static_cast<std::size_t>(scan.num_cells), label);
-  return segments;
-}
+inline segments_t MakeSegments(const lidar_scan_t& scan, std::int16_t label = 1) { return support::LabelsOf(scan, label); }
 
 /// A segment of four corners, one metre wide, with its nearest side `x_m` ahead of the lidar.
 inline segment_t MakeSegment(int id, float x_m) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lookout/tracks_t.hpp"
+#include "tests/support/messages.hpp"
 #include "tests/unit/export/export_logs.hpp"
 #include "tests/unit/export/map_tracks.hpp"
 #include "tools/export/own_map_text.hpp"
@@ -27,21 +28,15 @@ Utime At(int day, double second) {
 
 // TRACKS of a process that began on a day: things that stand since 30 s before, so far to the east of the datum.
 tracks_t Tracks(int day, double second, const std::vector<double>& east_m) {
-  tracks_t message{};
-  message.utime_us = ToUtimeUs(At(day, second));
-  message.end_utime_us = message.utime_us + 100'000;
-  message.seq = static_cast<std::int64_t>(10.0 * second);
-  message.num_parts = 1;
+  auto message = support::OfScan<tracks_t>(ToUtimeUs(At(day, second)), static_cast<std::int64_t>(10.0 * second), 100'000);
   message.begin_utime_us = ToUtimeUs(At(day, 0.0));
   message.sight = tracks_t::SIGHT_KNOWN;
-  message.datum_latitude_deg = kDatum.latitude_deg;
-  message.datum_longitude_deg = kDatum.longitude_deg;
-  message.datum_ellipsoid_height_m = kDatum.ellipsoid_height_m;
+  support::SetDatum(message, kDatum);
+  std::vector<track_t> tracks;
   for (std::size_t i = 0; i < east_m.size(); ++i) {
-    message.tracks.push_back(
-        test::StandingTrack(static_cast<std::int64_t>(i) + 1, kDatum, {east_m[i], 0.0}, At(day, second - 30.0), At(day, second)));
+    tracks.push_back(test::StandingTrack(static_cast<std::int64_t>(i) + 1, kDatum, {east_m[i], 0.0}, At(day, second - 30.0), At(day, second)));
   }
-  message.num_tracks = message.num_scan_tracks = static_cast<std::int32_t>(east_m.size());
+  support::Fill(message, tracks);
   return message;
 }
 

@@ -9,6 +9,7 @@
 #include "common/core/angles.hpp"
 #include "lookout/alerts_t.hpp"
 #include "lookout/tracks_t.hpp"
+#include "tests/support/messages.hpp"
 #include "tests/unit/export/export_logs.hpp"
 #include "tools/export/waterline.hpp"
 
@@ -41,14 +42,9 @@ obstacle_t MakeObstacle(int id, float east_m) {
 }
 
 obstacles_t MakeObstacles(std::int64_t seq, const std::vector<obstacle_t>& obstacles) {
-  obstacles_t message{};
-  message.utime_us = kStartUs + 100'000 * seq;
-  message.end_utime_us = message.utime_us + 99'999;
-  message.seq = seq;
-  message.num_parts = 1;
+  auto message = support::OfScan<obstacles_t>(kStartUs + 100'000 * seq, seq, 99'999);
   message.datum_longitude_deg = 180.0;
-  message.num_obstacles = static_cast<std::int32_t>(obstacles.size());
-  message.obstacles = obstacles;
+  support::Fill(message, obstacles);
   return message;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
+#include "tests/support/counters.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
 
 namespace lookout::georeferencer {
@@ -32,14 +33,6 @@ std::vector<ObstaclePart> AddPoses(Georeferencer& georeferencer, std::int64_t fi
     for (auto& part : georeferencer.AddPose(MakePose(offset_us))) all.push_back(std::move(part));
   }
   return all;
-}
-
-std::int64_t CountOf(const Georeferencer& georeferencer, std::string_view name) {
-  for (const auto& counter : georeferencer.counters()) {
-    if (counter.name == name) return counter.count;
-  }
-  ADD_FAILURE() << "no counter " << name;
-  return -1;
 }
 
 TEST(Georeferencer, ReleasesATurnWithTheFirstPoseAtOrAfterItsEnd) {
@@ -92,7 +85,7 @@ TEST(Georeferencer, ATurnWithoutObstaclesIsReleasedToo) {
 TEST(Georeferencer, WithoutHostTimeNothingTimesOut) {
   auto georeferencer = Make();
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(georeferencer.AddSegments(Turn(100'000 * i, i)).empty());
-  EXPECT_EQ(CountOf(georeferencer, "parts_waiting"), 100);
+  EXPECT_EQ(support::CountOf(georeferencer, "parts_waiting"), 100);
 }
 
 TEST(Georeferencer, AfterTheTimeoutReleasesWhatWaitsAndMarksOnlyWhatHasNoPose) {
@@ -105,7 +98,7 @@ TEST(Georeferencer, AfterTheTimeoutReleasesWhatWaitsAndMarksOnlyWhatHasNoPose) {
   ASSERT_EQ(released.size(), 1U);
   EXPECT_EQ(released[0].obstacles[0].status, ObstacleStatus::kOk);
   EXPECT_EQ(released[0].obstacles[1].status, ObstacleStatus::kPoseTimeout);
-  EXPECT_EQ(CountOf(georeferencer, "parts_timed_out"), 1);
+  EXPECT_EQ(support::CountOf(georeferencer, "parts_timed_out"), 1);
   EXPECT_EQ(georeferencer.last_timeout(), At(500'001));
 }
 
@@ -158,7 +151,7 @@ TEST(Georeferencer, HoldsAThousandAndThenGivesTheOldestUp) {
   ASSERT_EQ(released.size(), 1U);
   EXPECT_EQ(released[0].head.seq, 0);
   EXPECT_EQ(released[0].obstacles[0].status, ObstacleStatus::kPoseTimeout);
-  EXPECT_EQ(CountOf(georeferencer, "parts_overflowed"), 1);
+  EXPECT_EQ(support::CountOf(georeferencer, "parts_overflowed"), 1);
 }
 
 TEST(Georeferencer, ATurnFromTheFarFutureHoldsUpOthersUntilTheQueueIsFullAndLosesNone) {
@@ -170,7 +163,7 @@ TEST(Georeferencer, ATurnFromTheFarFutureHoldsUpOthersUntilTheQueueIsFullAndLose
     num_released += georeferencer.AddSegments(Turn(100'000 * (i - 1), i)).size();
   }
   EXPECT_EQ(num_released, 1001U);
-  EXPECT_EQ(CountOf(georeferencer, "parts_waiting"), 0);
+  EXPECT_EQ(support::CountOf(georeferencer, "parts_waiting"), 0);
 }
 
 TEST(Georeferencer, AtTheEndReleasesAllWithThePosesThatAreThere) {
@@ -193,15 +186,15 @@ TEST(Georeferencer, ADoublePoseIsLeftOutAndCounted) {
   second.position_map_m.x() = 5.0;
   georeferencer.AddPose(second);
   EXPECT_EQ(georeferencer.poses().newest()->position_map_m.x(), 0.0);
-  EXPECT_EQ(CountOf(georeferencer, "poses_duplicate"), 1);
-  EXPECT_EQ(CountOf(georeferencer, "pose_restarts"), 0);
+  EXPECT_EQ(support::CountOf(georeferencer, "poses_duplicate"), 1);
+  EXPECT_EQ(support::CountOf(georeferencer, "pose_restarts"), 0);
 }
 
 TEST(Georeferencer, APoseThatGoesBackInTimeBeginsANewRun) {
   auto georeferencer = Make();
   AddPoses(georeferencer, 0, 1'000'000);
   AddPoses(georeferencer, 500'000, 580'000);
-  EXPECT_EQ(CountOf(georeferencer, "pose_restarts"), 1);
+  EXPECT_EQ(support::CountOf(georeferencer, "pose_restarts"), 1);
   EXPECT_FALSE(georeferencer.poses().At(At(490'000)));
   EXPECT_TRUE(georeferencer.poses().At(At(510'000)));
 }
@@ -226,9 +219,9 @@ TEST(Georeferencer, CountsObstaclesByStatusAndThinnedOutlines) {
   segment.hull.assign(kMaxFootprintVertices + 1, segment.hull[0]);
   georeferencer.AddSegments(MakePart(0, 0, {segment}));
   AddPoses(georeferencer, 0, 100'000);
-  EXPECT_EQ(CountOf(georeferencer, "obstacles_ok"), 1);
-  EXPECT_EQ(CountOf(georeferencer, "footprints_thinned"), 1);
-  EXPECT_EQ(CountOf(georeferencer, "parts_released"), 1);
+  EXPECT_EQ(support::CountOf(georeferencer, "obstacles_ok"), 1);
+  EXPECT_EQ(support::CountOf(georeferencer, "footprints_thinned"), 1);
+  EXPECT_EQ(support::CountOf(georeferencer, "parts_released"), 1);
 }
 
 }  // namespace

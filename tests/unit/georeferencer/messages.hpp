@@ -10,6 +10,7 @@
 #include "lookout/segments_t.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
 #include "services/georeferencer/params.hpp"
+#include "tests/support/messages.hpp"
 
 namespace lookout::georeferencer::test {
 
@@ -55,9 +56,10 @@ inline pose_t MakePoseMessage(std::int64_t offset_us, std::int64_t seq = 0) {
   message.seq = seq;
   message.status = pose_t::STATUS_OK;
   message.heading_source = pose_t::HEADING_HDT;
-  message.datum_latitude_deg = message.latitude_deg = kLake.latitude_deg;
-  message.datum_longitude_deg = message.longitude_deg = kLake.longitude_deg;
-  message.datum_ellipsoid_height_m = message.ellipsoid_height_m = kLake.ellipsoid_height_m;
+  support::SetDatum(message, kLake);
+  message.latitude_deg = kLake.latitude_deg;
+  message.longitude_deg = kLake.longitude_deg;
+  message.ellipsoid_height_m = kLake.ellipsoid_height_m;
   for (int i = 0; i < 9; ++i) message.covariance[i][i] = 0.01;
   return message;
 }
@@ -95,14 +97,9 @@ inline void AddWaterline(segment_t& message, int num_vertices) {
 
 /// A turn of 100 ms without labels.
 inline segments_t MakeSegmentsMessage(std::int64_t offset_us, std::int64_t seq, std::vector<segment_t> segments) {
-  segments_t message{};
-  message.utime_us = kStartUs + offset_us;
-  message.end_utime_us = message.utime_us + 99'000;
-  message.seq = seq;
+  auto message = support::OfScan<segments_t>(kStartUs + offset_us, seq, 99'000);
   message.raw_seq = 10 * seq;
-  message.num_parts = 1;
-  message.segments = std::move(segments);
-  message.num_segments = message.num_turn_segments = static_cast<std::int32_t>(message.segments.size());
+  support::Fill(message, std::move(segments));
   return message;
 }
 

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "common/config/text_config.hpp"
+#include "tests/support/bus_fixture.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
 
@@ -22,24 +21,13 @@ using test::MakePoseMessage;
 using test::MakeSegmentMessage;
 using test::MakeSegmentsMessage;
 
-class GeoreferencerService : public ::testing::Test {
+class GeoreferencerService : public support::BusTest {
  protected:
-  bus::MemoryBus bus_;
   Params params_{PlacementParams{}, std::chrono::milliseconds(500)};
   Service service_{bus_, params_};
-  std::vector<obstacles_t> obstacles_;
+  support::Kept<obstacles_t> obstacles_{bus_, bus::kObstacles};
 
-  void SetUp() override {
-    bus::Subscribe<obstacles_t>(bus_, bus::kObstacles, [this](const obstacles_t& message) { obstacles_.push_back(message); });
-  }
-  void HandleAll() {
-    while (bus_.HandleOnce()) {
-    }
-  }
-  void SendTurn(std::int64_t offset_us) {
-    bus::Publish(bus_, bus::kSegments, MakeSegmentsMessage(offset_us, 0, {MakeSegmentMessage(1, offset_us)}));
-    HandleAll();
-  }
+  void SendTurn(std::int64_t offset_us) { Send(bus::kSegments, MakeSegmentsMessage(offset_us, 0, {MakeSegmentMessage(1, offset_us)})); }
   void SendPoses(std::int64_t first_us, std::int64_t last_us, std::int32_t status = pose_t::STATUS_OK) {
     for (auto offset_us = first_us; offset_us <= last_us; offset_us += 20'000) {
       auto message = MakePoseMessage(offset_us, offset_us / 20'000);
@@ -48,12 +36,7 @@ class GeoreferencerService : public ::testing::Test {
     }
     HandleAll();
   }
-  std::int64_t Count(std::string_view name) const {
-    for (const auto& counter : service_.Report().counters) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
-  }
+  std::int64_t Count(std::string_view name) const { return support::CountOf(service_, name); }
 };
 
 // 200 km off, and on the other side of the earth, as when latitude and longitude are swapped: such poses were refused, or taken without a word.
@@ -65,8 +48,7 @@ TEST(GeoreferencerDatum, ThatIsFarFromTheBoatIsNamedAndUsed) {
     Params params{PlacementParams{}, std::chrono::milliseconds(500)};
     params.datum = datum;
     Service service(bus, params);
-    std::vector<obstacles_t> obstacles;
-    bus::Subscribe<obstacles_t>(bus, bus::kObstacles, [&obstacles](const obstacles_t& message) { obstacles.push_back(message); });
+    const support::Kept<obstacles_t> obstacles(bus, bus::kObstacles);
     bus::Publish(bus, bus::kSegments, MakeSegmentsMessage(0, 0, {MakeSegmentMessage(1, 0)}));
     const Eigen::Vector3d p_map_m = LocalFrame(datum).Forward({43.7, -72.3, 100.0});
     for (std::int64_t offset_us = 0; offset_us <= 100'000; offset_us += 20'000) {
@@ -77,8 +59,7 @@ TEST(GeoreferencerDatum, ThatIsFarFromTheBoatIsNamedAndUsed) {
       for (int axis = 0; axis < 3; ++axis) message.position_map_m[axis] = p_map_m[axis];
       bus::Publish(bus, bus::kPose, message);
     }
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
     ASSERT_EQ(obstacles.size(), 1U);
     const auto& obstacle = obstacles[0].obstacles.at(0);
     ASSERT_EQ(obstacle.status, obstacle_t::STATUS_OK);

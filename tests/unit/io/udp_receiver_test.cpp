@@ -9,6 +9,8 @@
 #include <chrono>
 #include <gtest/gtest.h>
 
+#include "tests/support/socket.hpp"
+
 namespace lookout::io {
 namespace {
 
@@ -20,18 +22,11 @@ struct Route {
 };
 
 void Send(int port, const Payload& payload, const Route& route = {}) {
-  const int sender = socket(AF_INET, SOCK_DGRAM, 0);
-  ASSERT_GE(sender, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  inet_pton(AF_INET, route.from.c_str(), &address.sin_addr);
-  EXPECT_EQ(bind(sender, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  EXPECT_EQ(setsockopt(sender, IPPROTO_IP, IP_MULTICAST_IF, &address.sin_addr, sizeof address.sin_addr), 0);
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  inet_pton(AF_INET, route.to.c_str(), &address.sin_addr);
-  EXPECT_EQ(sendto(sender, payload.data(), payload.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof address),
-            static_cast<ssize_t>(payload.size()));
-  close(sender);
+  const support::Socket sender(SOCK_DGRAM);
+  EXPECT_TRUE(sender.Bind(0, route.from));
+  const auto interface = support::Ipv4(route.from, 0).sin_addr;
+  EXPECT_EQ(setsockopt(sender.descriptor(), IPPROTO_IP, IP_MULTICAST_IF, &interface, sizeof interface), 0);
+  EXPECT_TRUE(sender.SendTo(support::Ipv4(route.to, port), payload));
 }
 
 UdpOptions On(const std::string& address, int receive_buffer_bytes = 1 << 16) {

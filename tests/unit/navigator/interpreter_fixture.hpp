@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "services/navigator/core/interpreter.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -29,13 +30,7 @@ class InterpreterTest : public ::testing::Test {
   Reading Read(double time_s, const std::string& line, const char* source = "nav") {
     return interpreter_.Read({NoonPlus(time_s), seq_++, ItemKind::kSentence, source, line});
   }
-  std::int64_t Count(std::string_view name) const {
-    for (const auto& counter : interpreter_.counters()) {
-      if (counter.name == name) return counter.count;
-    }
-    ADD_FAILURE() << "no counter " << name;
-    return -1;
-  }
+  std::int64_t Count(std::string_view name) const { return support::CountOf(interpreter_, name); }
 
   Interpreter interpreter_{TestParams()};
   std::int64_t seq_ = 0;

@@ -20,7 +20,10 @@
 #include "services/navigator/io/gpsd_client.hpp"
 #include "services/navigator/io/serial_port.hpp"
 #include "services/navigator/io/tcp_client.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/pseudo_terminal.hpp"
+#include "tests/support/socket.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -50,13 +53,6 @@ class SourceTest : public ::testing::Test {
     }
     return source.fault().empty() != has_fault;
   }
-  static std::int64_t Count(Source& source, std::string_view name) {
-    for (const auto& counter : source.counters()) {
-      if (counter.name == name) return counter.count;
-    }
-    ADD_FAILURE() << "no counter " << name;
-    return -1;
-  }
   void Step(Source& source) {
     now_ += 100ms;
     source.Poll(now_);
@@ -70,35 +66,9 @@ class SourceTest : public ::testing::Test {
   int num_breaks_ = 0;  // that Wait saw
 };
 
-// Both ends of a pseudo terminal: the "cable" and the device that a serial source opens.
-struct Pty {
-  int cable = -1;
-  std::string device;
-
-  Pty() {
-    int end = -1;
-    char name[64] = {};
-    if (openpty(&cable, &end, name, nullptr, nullptr) == 0) close(end);
-    device = name;
-  }
-  ~Pty() { Unplug(); }
-  Pty(const Pty&) = delete;
-  Pty& operator=(const Pty&) = delete;
-  void Unplug() {
-    if (cable >= 0) close(cable);
-    cable = -1;
-  }
-  void Write(const std::string& text) const { EXPECT_EQ(write(cable, text.data(), text.size()), static_cast<ssize_t>(text.size())); }
-};
-
 class SerialTest : public SourceTest {
  protected:
   SerialTest() { std::filesystem::create_directories(folder_); }
-  // What udev does when an adapter is plugged in: the same name, another device.
-  void PlugIn(const Pty& pty) const {
-    std::filesystem::remove(link_);
-    std::filesystem::create_symlink(pty.device, link_);
-  }
   std::unique_ptr<Source> Serial(int baud) const { return std::make_unique<SerialPort>("gnss", link_, baud); }
 
   support::TempDir folder_;
@@ -106,9 +76,9 @@ class SerialTest : public SourceTest {
 };
 
 TEST_F(SerialTest, GivesTheBytesRawAndSetsThePort) {
-  Pty pty;
+  support::PseudoTerminal pty;
   ASSERT_GE(pty.cable, 0);
-  PlugIn(pty);
+  pty.PlugInAs(link_);
   const auto source = Serial(38400);
   ASSERT_TRUE(Wait(*source, false)) << source->fault();
   // A terminal that is not raw would echo, turn CR into LF, and eat 0x03 and 0x13.
@@ -121,12 +91,12 @@ TEST_F(SerialTest, GivesTheBytesRawAndSetsThePort) {
   EXPECT_EQ(cfgetispeed(&settings), B38400);
   EXPECT_EQ(settings.c_cflag & (CSIZE | PARENB | CSTOPB), static_cast<tcflag_t>(CS8));
   EXPECT_EQ(settings.c_lflag & (ICANON | ECHO | ISIG), 0U);
-  EXPECT_EQ(Count(*source, "gnss_bytes"), static_cast<std::int64_t>(text.size()));
+  EXPECT_EQ(support::CountOf(*source, "gnss_bytes"), static_cast<std::int64_t>(text.size()));
 }
 
 TEST_F(SerialTest, OpensAgainAfterItWasUnplugged) {
-  auto first = std::make_unique<Pty>();
-  PlugIn(*first);
+  auto first = std::make_unique<support::PseudoTerminal>();
+  first->PlugInAs(link_);
   const auto source = Serial(4800);
   const int file_descriptor = source->file_descriptor();
   ASSERT_TRUE(Wait(*source, false)) << source->fault();
@@ -137,14 +107,14 @@ TEST_F(SerialTest, OpensAgainAfterItWasUnplugged) {
   ASSERT_TRUE(Wait(*source, true));
   EXPECT_EQ(num_breaks_, 1);
   EXPECT_NE(source->fault().find(link_.string()), std::string::npos) << source->fault();
-  const Pty second;
-  PlugIn(second);
+  const support::PseudoTerminal second;
+  second.PlugInAs(link_);
   ASSERT_TRUE(Wait(*source, false)) << source->fault();
   second.Write("$C\r\n");
   EXPECT_EQ(Take(*source, 4), "$C\r\n");
   EXPECT_EQ(source->file_descriptor(), file_descriptor);
-  EXPECT_EQ(Count(*source, "gnss_lost"), 1);
-  EXPECT_EQ(Count(*source, "gnss_opened"), 2);
+  EXPECT_EQ(support::CountOf(*source, "gnss_lost"), 1);
+  EXPECT_EQ(support::CountOf(*source, "gnss_opened"), 2);
 }
 
 TEST_F(SerialTest, SaysWhyItCannotBeOpened) {
@@ -158,39 +128,17 @@ TEST_F(SerialTest, SaysWhyItCannotBeOpened) {
 
 // A server on a free port of this computer.
 struct Server {
-  int listener = -1;
-  int client = -1;
+  support::Socket listener{SOCK_STREAM};
+  support::Socket client = support::Socket::Of(-1);
   int port = 0;
 
   explicit Server(int asked_port = 0) {
-    listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    const int yes = 1;
-    setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(asked_port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    EXPECT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
-    EXPECT_EQ(listen(listener, 4), 0);
-    getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
-    port = ntohs(address.sin_port);
+    EXPECT_TRUE(listener.Bind(asked_port) && listener.Listen());
+    port = listener.port();
   }
-  ~Server() {
-    Drop();
-    close(listener);
-  }
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
-  void Accept() {
-    Drop();
-    client = accept(listener, nullptr, nullptr);
-  }
-  void Drop() {
-    if (client >= 0) close(client);
-    client = -1;
-  }
-  void Write(const std::string& text) const { EXPECT_EQ(send(client, text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size())); }
+  void Accept() { client = listener.Accept(); }
+  void Drop() { client.Close(); }
+  void Write(const std::string& text) const { client.Write(text); }
 };
 
 std::unique_ptr<Source> Tcp(int port) { return std::make_unique<TcpClient>("plotter", "127.0.0.1", port); }
@@ -214,8 +162,8 @@ TEST_F(SourceTest, TcpConnectsAgainWhenTheServerWasAway) {
   server->Write("$B\r\n");
   EXPECT_EQ(Take(*source, 4), "$B\r\n");
   EXPECT_EQ(num_breaks_, 1);
-  EXPECT_EQ(Count(*source, "plotter_lost"), 1);
-  EXPECT_EQ(Count(*source, "plotter_opened"), 2);
+  EXPECT_EQ(support::CountOf(*source, "plotter_lost"), 1);
+  EXPECT_EQ(support::CountOf(*source, "plotter_opened"), 2);
 }
 
 TEST_F(SourceTest, TcpReportsNothingOfAConnectionThatIsMadeAtOnceAndEachChangeOnce) {
@@ -279,7 +227,7 @@ TEST_F(SourceTest, GpsdIsAskedForSentencesAndItsReportsAreLeftOut) {
     server.Accept();  // that of the library
     server.Write("{\"class\":\"VERSION\",\"release\":\"3.22\",\"rev\":\"3.22\",\"proto_major\":3,\"proto_minor\":14}\r\n");
     char text[256] = {};
-    const auto size = recv(server.client, text, sizeof text - 1, 0);
+    const auto size = recv(server.client.descriptor(), text, sizeof text - 1, 0);
     command.assign(text, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
     server.Write(
         "{\"class\":\"DEVICES\",\"devices\":[]}\r\n$GPHDT,1.0,T*00\r\n{\"class\":\"TPV\",\"mode\":1}\r\n$GPHDT,2.0,T*00\r\n!AIVDM,1\r\n$GPH");
@@ -308,17 +256,17 @@ TEST_F(SourceTest, GpsdThatEndsWithinALineOrNeverEndsOneIsLost) {
       server.Accept();
       server.Accept();
       char command[256] = {};
-      recv(server.client, command, sizeof command, 0);
+      recv(server.client.descriptor(), command, sizeof command, 0);
       server.Write(text);
       if (text.size() < 100) server.Drop();
     });
-    for (int round = 0; round < 200 && Count(*source, "gpsd_lost") == 0; ++round) {
+    for (int round = 0; round < 200 && support::CountOf(*source, "gpsd_lost") == 0; ++round) {
       Step(*source);
       while (source->Receive(now_)) {
       }
       std::this_thread::sleep_for(10ms);
     }
-    EXPECT_EQ(Count(*source, "gpsd_lost"), 1) << text.substr(0, 30);
+    EXPECT_EQ(support::CountOf(*source, "gpsd_lost"), 1) << text.substr(0, 30);
     gpsd.join();
   }
 }
@@ -329,7 +277,7 @@ TEST_F(SourceTest, GpsdPassesTheSentencesOfAReceiverOn) {
   std::string program = "/usr/sbin/gpsd";
   if (access(program.c_str(), X_OK) != 0) program = (support::kSources / "build/gpsd/usr/sbin/gpsd").string();
   if (access(program.c_str(), X_OK) != 0) GTEST_SKIP() << program << " is not at hand (package gpsd)";
-  const Pty pty;
+  const support::PseudoTerminal pty;
   int port = 0;
   {
     const Server free_port;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/core/angles.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/unit/navigator/filter_params.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
@@ -26,13 +27,7 @@ class NavigatorTest : public ::testing::Test {
   NavigatorOutput Sentence(double time_s, const std::string& line, const char* source = kUdpSource) {
     return navigator_.Consume({NoonPlus(time_s), seq_++, ItemKind::kSentence, source, line});
   }
-  std::int64_t Count(std::string_view name) const {
-    for (const auto& counter : navigator_.counters()) {
-      if (counter.name == name) return counter.count;
-    }
-    ADD_FAILURE() << "no counter " << name;
-    return -1;
-  }
+  std::int64_t Count(std::string_view name) const { return support::CountOf(navigator_, name); }
   static std::vector<double> TimesMs(const NavigatorOutput& output) {
     std::vector<double> times_ms;
     for (const auto& pose : output.poses) times_ms.push_back(std::chrono::duration<double, std::milli>(pose.time - NoonPlus(0)).count());

@@ -6,11 +6,12 @@
 #include <map>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/pose_t.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -34,10 +35,7 @@ struct Rig {
   explicit Rig(const Params& params) : service(bus, params) {
     bus.SubscribeAll([this](std::string_view channel, Bytes bytes) { sent[std::string(channel)].emplace_back(bytes.begin(), bytes.end()); });
   }
-  void Drain() {
-    while (bus.HandleOnce()) {
-    }
-  }
+  void Drain() { support::HandleAll(bus); }
   template <typename T>
   void Send(const bus::Channel& channel, const T& message) {
     bus::Publish(bus, channel, message);
@@ -53,13 +51,7 @@ struct Rig {
     for (const auto& bytes : sent[std::string(channel.name)]) messages.push_back(bus::Decode<T>(bytes).value());
     return messages;
   }
-  std::int64_t Count(std::string_view name) const {
-    for (const auto& counter : service.Report().counters) {
-      if (counter.name == name) return counter.count;
-    }
-    ADD_FAILURE() << "no counter " << name;
-    return -1;
-  }
+  std::int64_t Count(std::string_view name) const { return support::CountOf(service, name); }
 };
 
 nav_raw_t RawMessage(double time_s, std::int32_t kind, const std::string& sentence = {}) {

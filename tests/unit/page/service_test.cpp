@@ -8,12 +8,12 @@
 #include <thread>
 #include <vector>
 
-#include "common/bus/memory_bus.hpp"
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/order_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "services/page/assets.hpp"
+#include "tests/support/bus_fixture.hpp"
 #include "tests/support/page_browser.hpp"
 
 namespace lookout::page {
@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t kStartUs = 1'782'901'200'000'000;
 
-class PageService : public ::testing::Test {
+class PageService : public support::BusTest {
  protected:
   PageService() {
     ServerParts parts;
@@ -37,14 +37,8 @@ class PageService : public ::testing::Test {
       num_kept_bytes_ += message.size();
     };
     service_ = std::make_unique<Service>(bus_, std::move(service_parts));
-    bus::Subscribe<alert_ack_t>(bus_, bus::kAlertAck, [this](const alert_ack_t& message) { sent_.push_back(message); });
-    bus::Subscribe<order_t>(bus_, bus::kOrders, [this](const order_t& message) { ordered_.push_back(message); });
   }
 
-  void Drain() {
-    while (bus_.HandleOnce()) {
-    }
-  }
   void SendAlert(std::int32_t state) {
     alerts_t message{};
     message.utime_us = ToUtimeUs(now_);
@@ -56,38 +50,30 @@ class PageService : public ::testing::Test {
     alert.state = state;
     message.num_alerts = 1;
     message.alerts = {alert};
-    bus::Publish(bus_, bus::kAlerts, message);
-    Drain();
+    Send(bus::kAlerts, message);
   }
   void Acknowledge(std::int64_t id, std::int64_t raised_us = kStartUs) {
     queue_.Push({id, Utime(std::chrono::microseconds(raised_us))});
     service_->AdvanceTo(now_);
-    Drain();
+    HandleAll();
   }
   void Tell(const Order& order) {
     orders_.Push(order);
     service_->AdvanceTo(now_);
-    Drain();
+    HandleAll();
   }
-  std::int64_t Count(std::string_view name) {
-    const auto report = service_->Report();
-    for (const auto& counter : report.counters) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
-  }
+  std::int64_t Count(std::string_view name) const { return support::CountOf(*service_, name); }
 
   static constexpr const char* kToken = "0123456789abcdef";
-  bus::MemoryBus bus_;
   Utime now_{std::chrono::microseconds(kStartUs)};
   AcknowledgementQueue queue_;
   OrderQueue orders_;
-  std::vector<order_t> ordered_;
+  support::Kept<order_t> ordered_{bus_, bus::kOrders};
   std::unique_ptr<Server> server_;
   std::unique_ptr<Service> service_;
   std::vector<std::string> kept_;
   std::size_t num_kept_bytes_ = 0;
-  std::vector<alert_ack_t> sent_;
+  support::Kept<alert_ack_t> sent_{bus_, bus::kAlertAck};
 };
 
 TEST_F(PageService, AcknowledgesAnAlertThatStands) {
@@ -187,8 +173,7 @@ TEST_F(PageService, SendsTheVeryBytesToWhoWatches) {
   health_t health{};
   health.process = "tracker";
   bus::Publish(bus_, bus::kHealth, health);
-  bus::Publish(bus_, bus::kTracks, message);
-  Drain();
+  Send(bus::kTracks, message);
   const auto frame = tab.Read();
   const auto bytes = bus::Encode(message);
   ASSERT_FALSE(frame.is_text);
@@ -201,7 +186,7 @@ TEST_F(PageService, KeepsEachMessageForTheLastMinutesButNoneThatDoesNotDecode) {
   message.num_parts = 1;
   bus::Publish(bus_, bus::kTracks, message);
   bus_.Publish(bus::kTracks, {1, 2, 3});
-  Drain();
+  HandleAll();
   EXPECT_EQ(kept_, std::vector<std::string>{"TRACKS"});
   EXPECT_EQ(num_kept_bytes_, bus::Encode(message).size());
   EXPECT_EQ(bus_.input_traffic()[std::string("TRACKS")].num_undecodable, 1);

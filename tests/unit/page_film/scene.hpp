@@ -17,6 +17,7 @@
 #include "services/page/core/recordings.hpp"
 #include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/messages.hpp"
 
 namespace lookout::page {
 
@@ -58,20 +59,16 @@ class SceneWriter {
     pose.seq = seq;
     Put(time_us - kPartUs, bus::kPose, pose);
     for (int part = 0; part < num_parts; ++part, time_us += kPartUs) {
-      lidar_scan_t scan{};
-      Stamp(scan, seq);
+      auto scan = support::OfScan<lidar_scan_t>(utime_us, seq, kScanUs - 1);
       scan.part_index = part;
       scan.num_parts = num_parts;
       scan.model = std::string(20'000, 'x');  // large: what follows it is passed over
       Put(time_us, bus::kLidarScan, scan);
     }
-    tracks_t tracks{};
-    Stamp(tracks, seq);
-    tracks.num_parts = 1;
+    auto tracks = support::OfScan<tracks_t>(utime_us, seq, kScanUs - 1);
     tracks.num_scan_tracks = num_tracks;
     Put(time_us, bus::kTracks, tracks);
-    alerts_t alerts{};
-    Stamp(alerts, seq);
+    auto alerts = support::OfScan<alerts_t>(utime_us, seq, kScanUs - 1);
     if (alert_level) {
       alert_t alert{};
       alert.id = 7;
@@ -79,8 +76,7 @@ class SceneWriter {
       alert.state = alert_t::STATE_ACTIVE;
       alert.raised_utime_us = kBeginUs;
       alert.text = "boat 17: closest approach 3 m";
-      alerts.alerts.push_back(alert);
-      alerts.num_alerts = 1;
+      support::Fill(alerts, {alert});
     }
     Put(time_us + kPartUs, bus::kAlerts, alerts);
   }
@@ -98,13 +94,6 @@ class SceneWriter {
   std::int64_t shift_us = 0;  // of the host's clock
 
  private:
-  template <typename Message>
-  static void Stamp(Message& message, std::int64_t seq) {
-    message.utime_us = kBeginUs + seq * kScanUs;
-    message.seq = seq;
-    message.end_utime_us = message.utime_us + kScanUs - 1;
-  }
-
   Sink& sink_;
   std::int64_t health_seq_ = 0;
 };

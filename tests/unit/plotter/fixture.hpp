@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/memory_bus.hpp"
 #include "services/plotter/n2k_output.hpp"
 #include "services/plotter/nmea_output.hpp"
 #include "services/plotter/service.hpp"
 #include "services/plotter/signal_k_output.hpp"
+#include "tests/support/counters.hpp"
+#include "tests/support/memory_bus.hpp"
+#include "tests/support/messages.hpp"
 
 namespace lookout::plotter::test {
 
@@ -52,6 +54,7 @@ class KeepingLink : public Link {
 };
 
 inline constexpr std::int64_t kStartUs = 1'782'901'200'000'000;
+inline constexpr GeodeticPlace kPlace{53.3, -6.1, 0.0};
 
 class ServiceFixture : public ::testing::Test {
  protected:
@@ -103,10 +106,7 @@ class ServiceFixture : public ::testing::Test {
   }
 
   Utime Now() const { return Utime(std::chrono::microseconds(host_us_)); }
-  void HandleAll() {
-    while (bus_->HandleOnce()) {
-    }
-  }
+  void HandleAll() { support::HandleAll(*bus_); }
   void Clear() {
     for (auto* link : {nmea_, signal_k_, n2k_}) link->sent.clear();
   }
@@ -126,61 +126,31 @@ class ServiceFixture : public ::testing::Test {
     pose.seq = pose_seq_++;
     pose.status = pose_status_;
     pose.heading_source = heading_source_;
-    pose.datum_latitude_deg = 53.3;
-    pose.datum_longitude_deg = -6.1;
-    pose.datum_ellipsoid_height_m = 0.0;
-    pose.latitude_deg = 53.3;
-    pose.longitude_deg = -6.1;
+    support::SetDatum(pose, kPlace);
+    pose.latitude_deg = kPlace.latitude_deg;
+    pose.longitude_deg = kPlace.longitude_deg;
     pose.heading_rad = 0.5;
     pose.velocity_map_mps[0] = 2.0;
     if (pose_status_ == pose_t::STATUS_UNKNOWN) pose.latitude_deg = pose.longitude_deg = pose.heading_rad = kNan;
-    bus::Publish(*bus_, bus::kPose, pose);
-    HandleAll();
+    support::Send(*bus_, bus::kPose, pose);
   }
 
   tracks_t Tracks() {
-    tracks_t message{};
-    message.utime_us = host_us_ - 100'000;
-    message.seq = scan_seq_;
-    message.end_utime_us = host_us_;
-    message.num_parts = 1;
+    auto message = support::OfScan<tracks_t>(host_us_ - 100'000, scan_seq_, 100'000);
     message.begin_utime_us = begin_us_;
-    message.datum_latitude_deg = 53.3;
-    message.datum_longitude_deg = -6.1;
-    message.tracks = tracks_;
-    message.num_tracks = static_cast<std::int32_t>(tracks_.size());
-    message.num_scan_tracks = message.num_tracks;
+    support::SetDatum(message, kPlace);
+    support::Fill(message, tracks_);
     return message;
   }
-  // In parts, as the tracker does.
   void SendTracks(const tracks_t& message) {
-    constexpr std::size_t kMostTracks = 300;
-    const auto num_parts = std::max<std::size_t>(1, (message.tracks.size() + kMostTracks - 1) / kMostTracks);
-    for (std::size_t i = 0; i < num_parts; ++i) {
-      auto part = message;
-      if (num_parts > 1) {
-        const auto end = std::min(message.tracks.size(), (i + 1) * kMostTracks);
-        part.tracks = {message.tracks.begin() + static_cast<std::ptrdiff_t>(i * kMostTracks),
-                       message.tracks.begin() + static_cast<std::ptrdiff_t>(end)};
-        part.num_tracks = static_cast<std::int32_t>(part.tracks.size());
-        part.part_index = static_cast<std::int32_t>(i);
-        part.num_parts = static_cast<std::int32_t>(num_parts);
-      }
-      bus::Publish(*bus_, bus::kTracks, part);
-      HandleAll();
-    }
+    for (const auto& part : support::InParts(message, 300)) support::Send(*bus_, bus::kTracks, part);
   }
   void SendAlerts() {
-    alerts_t message{};
-    message.utime_us = host_us_ - 100'000;
-    message.seq = scan_seq_;
-    message.end_utime_us = host_us_;
-    message.alerts = alerts_;
-    message.num_alerts = static_cast<std::int32_t>(alerts_.size());
+    auto message = support::OfScan<alerts_t>(host_us_ - 100'000, scan_seq_, 100'000);
+    support::Fill(message, alerts_);
     message.sounding_alert_id = sounding_alert_id_;
     message.silenced_until_utime_us = silenced_until_us_;
-    bus::Publish(*bus_, bus::kAlerts, message);
-    HandleAll();
+    support::Send(*bus_, bus::kAlerts, message);
   }
 
   // Everything comes, ten times a second.
@@ -224,12 +194,7 @@ class ServiceFixture : public ::testing::Test {
     return alert;
   }
 
-  std::int64_t Count(std::string_view name) const {
-    for (const auto& counter : service_->Report().counters) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
-  }
+  std::int64_t Count(std::string_view name) const { return support::CountOf(*service_, name); }
 };
 
 }  // namespace lookout::plotter::test

@@ -4,54 +4,20 @@
 
 #include <filesystem>
 
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/pseudo_terminal.hpp"
 #include "tests/unit/plotter_io/links_test.hpp"
 
 namespace lookout::plotter {
 namespace {
 
-// The cable of a pseudo terminal, and the device at its other end.
-struct Pty {
-  int cable = -1;
-  std::string device;
-
-  Pty() {
-    int end = -1;
-    char name[64] = {};
-    if (openpty(&cable, &end, name, nullptr, nullptr) == 0) close(end);
-    device = name;
-  }
-  ~Pty() { Unplug(); }
-  Pty(const Pty&) = delete;
-  Pty& operator=(const Pty&) = delete;
-  void Unplug() {
-    if (cable >= 0) close(cable);
-    cable = -1;
-  }
-  void Write(const std::string& text) const { EXPECT_EQ(write(cable, text.data(), text.size()), static_cast<ssize_t>(text.size())); }
-  std::string Read() const {
-    std::string text;
-    char bytes[4096];
-    for (pollfd waiting{cable, POLLIN, 0}; poll(&waiting, 1, 0) > 0 && (waiting.revents & POLLIN) != 0;) {
-      const auto size = read(cable, bytes, sizeof bytes);
-      if (size <= 0) break;
-      text.append(bytes, static_cast<std::size_t>(size));
-    }
-    return text;
-  }
-};
-
 class SerialLinkTest : public LinksTest {
  protected:
   SerialLinkTest() { std::filesystem::create_directories(folder_); }
-  // What udev does when an adapter is plugged in: the same name, another device.
-  void PlugIn(const Pty& pty) const {
-    std::filesystem::remove(path_);
-    std::filesystem::create_symlink(pty.device, path_);
-  }
   void Open(int baud) { link_ = links_.Serial({.name = "radio", .device = path_.string(), .baud = baud}); }
   bool IsOpen() const { return link_->is_open(); }
-  std::int64_t Of(const std::string& ending) const { return Count(*link_, "radio_" + ending); }
+  std::int64_t Of(const std::string& ending) const { return support::CountOf(*link_, "radio_" + ending); }
 
   support::TempDir folder_;
   std::filesystem::path path_ = folder_ / "radio";
@@ -59,8 +25,8 @@ class SerialLinkTest : public LinksTest {
 };
 
 TEST_F(SerialLinkTest, SendsRawBytesAndReceivesLines) {
-  const Pty pty;
-  PlugIn(pty);
+  const support::PseudoTerminal pty;
+  pty.PlugInAs(path_);
   Open(38400);
   ASSERT_TRUE(Until([&] { return IsOpen() && link_->room_bytes() > 100; })) << link_->fault();
   // A terminal that is not raw would make CR LF of LF, and obey 0x03 and 0x13.
@@ -78,8 +44,8 @@ TEST_F(SerialLinkTest, SendsRawBytesAndReceivesLines) {
 }
 
 TEST_F(SerialLinkTest, OpensAgainAfterItWasUnplugged) {
-  auto first = std::make_unique<Pty>();
-  PlugIn(*first);
+  auto first = std::make_unique<support::PseudoTerminal>();
+  first->PlugInAs(path_);
   Open(4800);
   ASSERT_TRUE(Until([&] { return IsOpen(); })) << link_->fault();
   first->Unplug();
@@ -90,8 +56,8 @@ TEST_F(SerialLinkTest, OpensAgainAfterItWasUnplugged) {
   EXPECT_EQ(link_->room_bytes(), 0U);
   link_->Send("$old\r\n");
   EXPECT_EQ(Of("unsent"), 1);
-  const Pty second;
-  PlugIn(second);
+  const support::PseudoTerminal second;
+  second.PlugInAs(path_);
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_TRUE(Until([&] { return IsOpen() && link_->room_bytes() >= 6; })) << link_->fault();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 1500ms);
@@ -102,8 +68,8 @@ TEST_F(SerialLinkTest, OpensAgainAfterItWasUnplugged) {
 }
 
 TEST_F(SerialLinkTest, HasRoomForWhatItsSpeedCarries) {
-  const Pty pty;
-  PlugIn(pty);
+  const support::PseudoTerminal pty;
+  pty.PlugInAs(path_);
   Open(9600);  // 960 bytes/s
   ASSERT_TRUE(Until([&] { return IsOpen(); }));
   const std::string line = std::string(48, 'a') + "\r\n";
@@ -126,8 +92,8 @@ TEST_F(SerialLinkTest, HasRoomForWhatItsSpeedCarries) {
 }
 
 TEST_F(SerialLinkTest, DropsWhatItHasNoRoomFor) {
-  const Pty pty;
-  PlugIn(pty);
+  const support::PseudoTerminal pty;
+  pty.PlugInAs(path_);
   Open(4800);
   ASSERT_TRUE(Until([&] { return IsOpen() && link_->room_bytes() >= 80; }));
   for (int i = 0; i < 100; ++i) link_->Send(std::string(78, 'a') + "\r\n");
@@ -141,8 +107,8 @@ TEST_F(SerialLinkTest, DropsWhatItHasNoRoomFor) {
 
 // A pseudo terminal holds some kB: a port that sends nothing on, as one whose adapter hangs.
 TEST_F(SerialLinkTest, OpensAgainWhenThePortSendsNothingOn) {
-  const Pty pty;
-  PlugIn(pty);
+  const support::PseudoTerminal pty;
+  pty.PlugInAs(path_);
   Open(921600);
   ASSERT_TRUE(Until([&] { return IsOpen() && link_->room_bytes() > 40'000; }));
   link_->Send(std::string(40'000, 'a'));
@@ -159,8 +125,8 @@ TEST_F(SerialLinkTest, SaysWhyItCannotBeOpened) {
   std::filesystem::create_directory(path_);
   EXPECT_TRUE(Until([&] { return Holds(link_->fault(), "Is a directory"); })) << link_->fault();
   std::filesystem::remove(path_);
-  const Pty pty;
-  PlugIn(pty);
+  const support::PseudoTerminal pty;
+  pty.PlugInAs(path_);
   Open(4801);
   EXPECT_TRUE(Until([&] { return Holds(link_->fault(), "4801 baud is none"); })) << link_->fault();
 }

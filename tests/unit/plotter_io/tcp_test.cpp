@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "tests/support/counters.hpp"
 #include "tests/unit/plotter_io/links_test.hpp"
 
 namespace lookout::plotter {
@@ -23,7 +24,7 @@ class TcpServerTest : public LinksTest {
     EXPECT_TRUE(Until([&] { return link_->num_openings() > num_openings; }));
     return client;
   }
-  std::int64_t Of(const std::string& ending) const { return Count(*link_, "ipad_" + ending); }
+  std::int64_t Of(const std::string& ending) const { return support::CountOf(*link_, "ipad_" + ending); }
 
   int port_ = 0;
   std::unique_ptr<Link> link_;
@@ -253,7 +254,7 @@ TEST_F(TcpClientTest, SendsWhatItIsGivenAndReceivesLines) {
   auto peer = server.Accept();
   link->Send("$A\r\n");
   peer.Write("$B\r\n");
-  ASSERT_TRUE(Until([&] { return Count(*link, "sk_received") == 1 && Count(*link, "sk_sent") == 1; }));
+  ASSERT_TRUE(Until([&] { return support::CountOf(*link, "sk_received") == 1 && support::CountOf(*link, "sk_sent") == 1; }));
   EXPECT_EQ(peer.Read(), "$A\r\n");
   EXPECT_EQ(link->Receive(), "$B");
 }
@@ -263,13 +264,13 @@ TEST_F(TcpClientTest, ConnectsAgainWhenTheServerWasAway) {
   const auto link = Client(port);
   ASSERT_TRUE(Until([&] { return Holds(link->fault(), "Connection refused"); })) << link->fault();
   link->Send("$old\r\n");
-  EXPECT_EQ(Count(*link, "sk_unsent"), 1);
+  EXPECT_EQ(support::CountOf(*link, "sk_unsent"), 1);
   Socket server(SOCK_STREAM);
   ASSERT_TRUE(server.Bind(port) && server.Listen());
   ASSERT_TRUE(Until([&] { return link->is_open(); }));
   auto peer = server.Accept();
   link->Send("$A\r\n");
-  ASSERT_TRUE(Until([&] { return Count(*link, "sk_sent") == 1; }));
+  ASSERT_TRUE(Until([&] { return support::CountOf(*link, "sk_sent") == 1; }));
   EXPECT_EQ(peer.Read(), "$A\r\n");
   peer.Reset();
   ASSERT_TRUE(Until([&] { return !link->is_open(); }));
@@ -303,7 +304,7 @@ TEST_F(TcpClientTest, DropsWhatAServerThatDoesNotReadIsTooLateFor) {
       },
       10s));
   EXPECT_TRUE(Until([&] { return Holds(link->fault(), "is too slow"); }, 100ms)) << link->fault();
-  EXPECT_GT(Count(*link, "sk_dropped"), 100);
+  EXPECT_GT(support::CountOf(*link, "sk_dropped"), 100);
   ASSERT_TRUE(Until([&] { return link->is_open(); }));
   auto awake = server.Accept();
   link->Send("$new\r\n");
@@ -336,7 +337,7 @@ TEST_F(UdpTest, SendsADatagramForEachMessage) {
   EXPECT_EQ(std::string(bytes, 4), "$A\r\n");
   ASSERT_EQ(recv(receiver.descriptor(), bytes, sizeof bytes, MSG_DONTWAIT), 4);
   EXPECT_EQ(std::string(bytes, 4), "$B\r\n");
-  EXPECT_EQ(Count(*link, "plotter_sent"), 2);
+  EXPECT_EQ(support::CountOf(*link, "plotter_sent"), 2);
   EXPECT_EQ(link->Receive(), std::nullopt);
   EXPECT_EQ(link->fault(), "");
 }
@@ -351,8 +352,8 @@ TEST_F(UdpTest, SaysThatNobodyListensAndSendsOnWithoutAFault) {
   }));
   EXPECT_EQ(link->remark(), "nobody listens at 127.0.0.1 port " + std::to_string(port) + ": Connection refused");
   EXPECT_EQ(link->fault(), "");
-  EXPECT_GE(Count(*link, "plotter_unheard"), 1);
-  EXPECT_EQ(Count(*link, "plotter_unsent"), 0);
+  EXPECT_GE(support::CountOf(*link, "plotter_unheard"), 1);
+  EXPECT_EQ(support::CountOf(*link, "plotter_unsent"), 0);
   link->Send("$A\r\n");
   // The error of the message before must not cost this one.
   Socket receiver(SOCK_DGRAM);
@@ -368,7 +369,7 @@ TEST_F(UdpTest, CountsWhatIsTooLongForADatagram) {
   ASSERT_TRUE(receiver.Bind(0));
   const auto link = links_.Udp({.name = "plotter", .address = "127.0.0.1", .port = receiver.port()});
   link->Send(std::string(70'000, 'a'));
-  EXPECT_EQ(Count(*link, "plotter_unsent"), 1);
+  EXPECT_EQ(support::CountOf(*link, "plotter_unsent"), 1);
   EXPECT_TRUE(Holds(link->fault(), "Message too long")) << link->fault();
   link->Send("$A\r\n");
   EXPECT_TRUE(receiver.IsReadable(1000));
@@ -397,7 +398,7 @@ TEST_F(UdpTest, WaitsForItsInterface) {
   EXPECT_TRUE(Holds(link->fault(), "there is no interface 'boat0'")) << link->fault();
   EXPECT_FALSE(link->is_open());
   link->Send("$A\r\n");
-  EXPECT_EQ(Count(*link, "plotter_unsent"), 1);
+  EXPECT_EQ(support::CountOf(*link, "plotter_unsent"), 1);
   PollFor(1200ms);
   EXPECT_FALSE(link->fault().empty());
 }

@@ -4,6 +4,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
+#include "tests/support/counters.hpp"
 #include "tests/unit/plotter_io/links_test.hpp"
 
 namespace lookout::plotter {
@@ -69,7 +70,7 @@ class WebSocketTest : public LinksTest {
     EXPECT_TRUE(Until([&] { return !Holds(link_->fault(), "is not open yet"); }));
     return link_->fault();
   }
-  std::int64_t Of(const std::string& ending) const { return Count(*link_, "sk_" + ending); }
+  std::int64_t Of(const std::string& ending) const { return support::CountOf(*link_, "sk_" + ending); }
 
   Socket listener_{SOCK_STREAM};
   std::unique_ptr<Link> link_;

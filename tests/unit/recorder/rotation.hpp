@@ -20,10 +20,10 @@
 
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/recorder/service.hpp"
+#include "tests/support/bus_fixture.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::recorder {
@@ -32,11 +32,10 @@ namespace fs = std::filesystem;
 using std::chrono::seconds;
 inline constexpr std::int64_t kPlenty = 1'000'000'000'000;
 
-class Rotation : public ::testing::Test {
+class Rotation : public support::BusTest {
  protected:
   support::TempDir temp_dir_;
   fs::path folder_ = temp_dir_.path();  // a test may look elsewhere
-  bus::MemoryBus bus_;
   Utime now_{seconds(1'800'000'000)};
   Params params_{.log_folder = folder_, .reserve_bytes = 0};
   std::int64_t seq_ = 0;
@@ -51,8 +50,7 @@ class Rotation : public ::testing::Test {
       message.seq = seq_++;
       bus::Publish(bus_, bus::kPose, message);
     }
-    while (bus_.HandleOnce()) {
-    }
+    HandleAll();
   }
   std::vector<fs::path> Files() const {
     std::vector<fs::path> files;
@@ -88,12 +86,6 @@ class Rotation : public ::testing::Test {
     std::vector<std::int64_t> seqs;
     for (std::int64_t i = 0; i < count; ++i) seqs.push_back(i);
     return seqs;
-  }
-  static std::int64_t Count(const Service& service, std::string_view name) {
-    for (const auto& counter : service.Report().counters) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
   }
 };
 

@@ -15,8 +15,8 @@ TEST_F(Rotation, BySizeLosesAndDoublesNothing) {
     }
     service.Flush();
     EXPECT_EQ(service.Report().state, HealthState::kOk) << service.Report().reason;
-    EXPECT_EQ(Count(service, "lost"), 0);
-    EXPECT_EQ(Count(service, "files"), static_cast<std::int64_t>(Files().size()));
+    EXPECT_EQ(support::CountOf(service, "lost"), 0);
+    EXPECT_EQ(support::CountOf(service, "files"), static_cast<std::int64_t>(Files().size()));
   }
   EXPECT_GE(Files().size(), 8U);
   for (const auto& file : Files()) EXPECT_LE(fs::file_size(file), 50'000U);
@@ -98,7 +98,7 @@ TEST_F(Rotation, StopsBeforeTheDiskIsFullDeletesNothingAndGoesOnWhenThereIsRoom)
     EXPECT_EQ(full.state, HealthState::kFailed);
     EXPECT_EQ(full.reason.rfind("not recording: ", 0), 0U) << full.reason;
     EXPECT_NE(full.reason.find("1 MB are free"), std::string::npos) << full.reason;
-    EXPECT_EQ(Count(service, "lost_disk_full"), 10);
+    EXPECT_EQ(support::CountOf(service, "lost_disk_full"), 10);
     EXPECT_EQ(service.TakeWarnings().size(), 1U);
     EXPECT_EQ(Files().size(), 1U) << "no log is begun that could hold nothing";
 
@@ -152,8 +152,8 @@ TEST_F(Rotation, ATornWriteIsCutOffAndWhatItHeldIsCounted) {
     is_broken = true;
     Send(3);
     service.Flush();
-    EXPECT_EQ(Count(service, "lost"), 3);
-    EXPECT_EQ(Count(service, "write_faults"), 1);
+    EXPECT_EQ(support::CountOf(service, "lost"), 3);
+    EXPECT_EQ(support::CountOf(service, "write_faults"), 1);
     is_broken = false;
     service.AdvanceTo(now_);
     Send(2);
@@ -185,9 +185,9 @@ TEST_F(Rotation, AttemptsThatFailInTheirFirstBlockLeaveNoFile) {
     service.Flush();
   }
   EXPECT_EQ(Files().size(), 1U);
-  EXPECT_EQ(Count(service, "files"), 1);
-  EXPECT_EQ(Count(service, "files_disturbed"), 0) << service.Report().reason;
-  EXPECT_EQ(Count(service, "write_faults"), 6);
+  EXPECT_EQ(support::CountOf(service, "files"), 1);
+  EXPECT_EQ(support::CountOf(service, "files_disturbed"), 0) << service.Report().reason;
+  EXPECT_EQ(support::CountOf(service, "write_faults"), 6);
   is_broken = false;
   service.AdvanceTo(now_);
   Send(1);
@@ -214,7 +214,7 @@ TEST_F(Rotation, AWriteFaultAfterACutMakesTheLogNoLongerAndCountsBoth) {
   Service service = Make(disk);
   Send(10);
   service.Flush();
-  kept_bytes = Count(service, "bytes");
+  kept_bytes = support::CountOf(service, "bytes");
   log = service.log_file();
   Send(20);
   service.Flush();
@@ -222,10 +222,10 @@ TEST_F(Rotation, AWriteFaultAfterACutMakesTheLogNoLongerAndCountsBoth) {
   Send(1);
   service.Flush();
   EXPECT_EQ(static_cast<std::int64_t>(fs::file_size(log)), kept_bytes);
-  EXPECT_EQ(Count(service, "events"), 11);
-  EXPECT_EQ(Count(service, "bytes"), kept_bytes);
-  EXPECT_EQ(Count(service, "lost"), 21);
-  EXPECT_EQ(Count(service, "files_disturbed"), 1);
+  EXPECT_EQ(support::CountOf(service, "events"), 11);
+  EXPECT_EQ(support::CountOf(service, "bytes"), kept_bytes);
+  EXPECT_EQ(support::CountOf(service, "lost"), 21);
+  EXPECT_EQ(support::CountOf(service, "files_disturbed"), 1);
   EXPECT_EQ(Recorded(), UpTo(10));
 }
 
@@ -241,9 +241,9 @@ TEST_F(Rotation, ALogIsWrittenOnWhereTheNextCannotBeMade) {
   service.Rotate(now_);
   Send(5);
   service.Flush();
-  EXPECT_EQ(Count(service, "lost"), 0);
+  EXPECT_EQ(support::CountOf(service, "lost"), 0);
   EXPECT_EQ(service.Report().state, HealthState::kDegraded);
-  EXPECT_EQ(Count(service, "write_faults"), 1);
+  EXPECT_EQ(support::CountOf(service, "write_faults"), 1);
   const auto warnings = service.TakeWarnings();
   ASSERT_FALSE(warnings.empty());
   EXPECT_NE(warnings.back().find("is written on"), std::string::npos) << warnings.back();
@@ -251,7 +251,7 @@ TEST_F(Rotation, ALogIsWrittenOnWhereTheNextCannotBeMade) {
   service.AdvanceTo(now_);
   Send(5);
   service.Flush();
-  EXPECT_EQ(Count(service, "lost"), 0);
+  EXPECT_EQ(support::CountOf(service, "lost"), 0);
   EXPECT_EQ(Recorded(), (std::vector<std::int64_t>{20, 21, 22, 23, 24}));
   std::vector<std::int64_t> seqs;
   for (const auto& entry : fs::directory_iterator(moved)) {
@@ -275,15 +275,15 @@ TEST_F(Rotation, WhatTheDiskCouldNotKeepIsLost) {
   Service service = Make(disk);
   Send(10);
   service.Flush();
-  const auto kept_bytes = Count(service, "bytes");
-  const auto num_kept = Count(service, "events");
+  const auto kept_bytes = support::CountOf(service, "bytes");
+  const auto num_kept = support::CountOf(service, "events");
   is_broken = true;
   Send(4);
   service.Flush();
-  EXPECT_EQ(Count(service, "lost"), 4);
-  EXPECT_EQ(Count(service, "bytes"), kept_bytes);
-  EXPECT_EQ(Count(service, "events"), num_kept);
-  EXPECT_GT(Count(service, "lost_bytes"), 0);
+  EXPECT_EQ(support::CountOf(service, "lost"), 4);
+  EXPECT_EQ(support::CountOf(service, "bytes"), kept_bytes);
+  EXPECT_EQ(support::CountOf(service, "events"), num_kept);
+  EXPECT_GT(support::CountOf(service, "lost_bytes"), 0);
   EXPECT_EQ(service.Report().state, HealthState::kFailed);
   is_broken = false;
   service.AdvanceTo(now_);
@@ -323,13 +323,13 @@ TEST_F(Rotation, ADiskThatStandsStillHoldsUpNobodyAndLosesNothingThatTheQueueHol
   service.AdvanceTo(now_);
   service.Rotate(now_);
   Send(1000);
-  EXPECT_GT(Count(service, "queue_bytes"), 1'000'000);
+  EXPECT_GT(support::CountOf(service, "queue_bytes"), 1'000'000);
   EXPECT_EQ(service.Report().state, HealthState::kOk) << service.Report().reason;
   standing.Stand(false);
   service.Flush();
-  EXPECT_EQ(Count(service, "lost"), 0);
-  EXPECT_EQ(Count(service, "queue_bytes"), 0);
-  EXPECT_GT(Count(service, "queue_peak_bytes"), 1'000'000);
+  EXPECT_EQ(support::CountOf(service, "lost"), 0);
+  EXPECT_EQ(support::CountOf(service, "queue_bytes"), 0);
+  EXPECT_GT(support::CountOf(service, "queue_peak_bytes"), 1'000'000);
   EXPECT_EQ(Recorded(), UpTo(3000));
 }
 
@@ -339,9 +339,9 @@ TEST_F(Rotation, BeyondTheQueueEventsAreCountedNotKept) {
   Service service = Make(standing.Make());
   standing.Stand(true);
   Send(5000);
-  const auto num_lost = Count(service, "lost_queue_full");
+  const auto num_lost = support::CountOf(service, "lost_queue_full");
   EXPECT_GT(num_lost, 1000);
-  EXPECT_LE(Count(service, "queue_peak_bytes"), 1'000'000);
+  EXPECT_LE(support::CountOf(service, "queue_peak_bytes"), 1'000'000);
   ASSERT_EQ(service.TakeWarnings().size(), 1U);
   EXPECT_TRUE(service.TakeWarnings().empty());
   standing.Stand(false);
@@ -365,8 +365,8 @@ TEST_F(Rotation, GapsInSeqAreCountedByChannel) {
     bus::Publish(bus_, bus::kNavRaw, raw);
   }
   Send(0);
-  EXPECT_EQ(Count(service, "missing"), 4);
-  EXPECT_EQ(Count(service, "raw_missing"), 1);
+  EXPECT_EQ(support::CountOf(service, "missing"), 4);
+  EXPECT_EQ(support::CountOf(service, "raw_missing"), 1);
   EXPECT_EQ(bus_.input_traffic()["POSE"].num_lost, 3);
   EXPECT_EQ(bus_.input_traffic()["POSE"].num_messages, 3);
   EXPECT_EQ(bus_.input_traffic()["NAV_RAW"].num_lost, 1);

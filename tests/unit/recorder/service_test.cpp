@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "common/bus/log_file.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/nav_raw_t.hpp"
+#include "tests/support/bus_fixture.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::recorder {
@@ -26,10 +26,9 @@ namespace fs = std::filesystem;
 using std::chrono::microseconds;
 using std::chrono::seconds;
 
-class Recorder : public ::testing::Test {
+class Recorder : public support::BusTest {
  protected:
   support::TempDir folder_;
-  bus::MemoryBus bus_;
   Utime now_{seconds(1'800'000'000)};
 
   // The disk that the tests run on may be nearly full.
@@ -38,10 +37,6 @@ class Recorder : public ::testing::Test {
   Service Make(const Disk& disk = RealDisk()) {
     return Service(
         bus_, params_, run_info_t{}, [this] { return now_; }, disk);
-  }
-  void HandleAll() {
-    while (bus_.HandleOnce()) {
-    }
   }
   static std::vector<bus::LogEvent> Events(const fs::path& file) {
     std::vector<bus::LogEvent> events;
@@ -70,6 +65,23 @@ TEST_F(Recorder, BeginsWithRunInfoAndLogsEveryChannelWithItsTimeOfReceipt) {
   EXPECT_EQ(events[1].time, now_);
   EXPECT_EQ(events[2].channel, "SOMEBODY_ELSES");
   EXPECT_EQ(events[2].bytes, (std::vector<std::uint8_t>{1, 2, 3}));
+}
+
+// A bus that hands nothing on for long must not grow what is remembered: of RUN_INFO that comes back the last eight are known again.
+TEST_F(Recorder, KnowsItsLastEightRunInfosWhenTheyComeBack) {
+  for (const auto& [num_waiting, num_forgotten] : {std::pair{8, 0}, {9, 1}, {12, 4}}) {
+    bus::MemoryBus bus;
+    Service service(
+        bus, params_, run_info_t{}, [this] { return now_; }, RealDisk());
+    for (int i = 1; i < num_waiting; ++i) {
+      now_ += seconds(10);
+      service.AdvanceTo(now_);
+    }
+    support::HandleAll(bus);
+    service.Flush();
+    EXPECT_EQ(Events(service.log_file()).size(), static_cast<std::size_t>(num_waiting + num_forgotten)) << num_waiting;
+    now_ += seconds(10);
+  }
 }
 
 TEST_F(Recorder, RepeatsRunInfoEveryTenSecondsAndLogsItOnce) {
@@ -130,8 +142,7 @@ TEST_F(Recorder, LogsTheRunInfoOfSomebodyElse) {
   Service service = Make();
   run_info_t other{};
   other.program = "replay";
-  bus::Publish(bus_, bus::kRunInfo, other);
-  HandleAll();
+  Send(bus::kRunInfo, other);
   service.Flush();
   const auto events = Events(service.log_file());
   ASSERT_EQ(events.size(), 2U);
@@ -149,19 +160,11 @@ TEST_F(Recorder, SendsRunInfoAgainWhenTheHostsClockIsSetBack) {
 // Nobody has to ask for it: what is killed a second later is on the disk.
 TEST_F(Recorder, HandsOverWhatItHoldsByItself) {
   Service service = Make();
-  bus::Publish(bus_, bus::kLidarNmea, lidar_nmea_t{});
-  HandleAll();
+  Send(bus::kLidarNmea, lidar_nmea_t{});
   const auto deadline = std::chrono::steady_clock::now() + seconds(20);
   while (Events(service.log_file()).size() < 2 && std::chrono::steady_clock::now() < deadline)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_EQ(Events(service.log_file()).size(), 2U);
-}
-
-std::int64_t Count(const Service& service, std::string_view name) {
-  for (const auto& counter : service.Report().counters) {
-    if (counter.name == name) return counter.count;
-  }
-  return -1;
 }
 
 // Sends bytes on a channel that is in no table.
@@ -182,7 +185,7 @@ TEST_F(Recorder, WarnsOnceOfEachUnknownChannelAndKeepsItsNamePrintable) {
   EXPECT_EQ(warnings[0], "channel SOMEBODY_ELSES is not in the channel table; it is recorded");
   EXPECT_EQ(warnings[1], "channel UGLY?[2J? is not in the channel table; it is recorded");
   EXPECT_TRUE(service.TakeWarnings().empty());
-  EXPECT_EQ(Count(service, "unknown_channel"), 6);
+  EXPECT_EQ(support::CountOf(service, "unknown_channel"), 6);
   EXPECT_EQ(service.Report().state, HealthState::kOk);
   service.Flush();
   EXPECT_EQ(Events(service.log_file()).back().channel, ugly) << "as it came";
@@ -197,7 +200,7 @@ TEST_F(Recorder, NamesTwentyUnknownChannelsAndCountsTheRest) {
   const auto warnings = service.TakeWarnings();
   ASSERT_EQ(warnings.size(), 20U);
   EXPECT_NE(warnings.back().find("further ones are not named"), std::string::npos);
-  EXPECT_EQ(Count(service, "unknown_channel"), 30);
+  EXPECT_EQ(support::CountOf(service, "unknown_channel"), 30);
 }
 
 // A bus that hands over whatever a transport other than UDP may bring.
@@ -230,9 +233,9 @@ TEST_F(Recorder, CountsAndTellsOnceWhatALogCannotHold) {
   }
   anything.Bring("LARGE", most);
   anything.Bring(longest, Bytes(most).first(3));
-  EXPECT_EQ(Count(service, "event_too_large"), 2);
-  EXPECT_EQ(Count(service, "channel_name_too_long"), 4);
-  EXPECT_EQ(Count(service, "nameless_channel"), 2);
+  EXPECT_EQ(support::CountOf(service, "event_too_large"), 2);
+  EXPECT_EQ(support::CountOf(service, "channel_name_too_long"), 4);
+  EXPECT_EQ(support::CountOf(service, "nameless_channel"), 2);
   const auto warnings = service.TakeWarnings();
   ASSERT_EQ(warnings.size(), 5U);
   EXPECT_EQ(warnings[0], "an event of 16777217 bytes on channel HUGE? (16777216 are allowed) cannot be recorded; further ones are counted in HEALTH");
@@ -255,9 +258,9 @@ TEST_F(Recorder, CountsRawMessagesThatDidNotArrive) {
   bus_.Publish(bus::kNavRaw, std::vector<std::uint8_t>{1, 2, 3});
   HandleAll();
   service.Flush();
-  EXPECT_EQ(Count(service, "raw_missing"), 2);
+  EXPECT_EQ(support::CountOf(service, "raw_missing"), 2);
   EXPECT_EQ(service.Report().state, HealthState::kDegraded);
-  EXPECT_EQ(Count(service, "events"), 8) << "all are recorded, also what cannot be read";
+  EXPECT_EQ(support::CountOf(service, "events"), 8) << "all are recorded, also what cannot be read";
 }
 
 // Messages of navigators that go on by turns, and the recorder's clock with them.
@@ -268,8 +271,7 @@ class RecorderOfNumbers : public Recorder {
     nav_raw_t message{};
     message.seq = seq;
     message.utime_us = ToUtimeUs(now_);
-    bus::Publish(bus_, bus::kNavRaw, message);
-    HandleAll();
+    BusTest::Send(bus::kNavRaw, message);
   }
   void Pass(Service& service, int num_seconds) {
     for (int i = 0; i < 2 * num_seconds; ++i) {
@@ -287,7 +289,7 @@ TEST_F(RecorderOfNumbers, ALossIsToldForAMinuteAndItsCountStays) {
   EXPECT_EQ(service.Report().state, HealthState::kDegraded);
   Pass(service, 1);
   EXPECT_EQ(service.Report().state, HealthState::kOk) << service.Report().reason;
-  EXPECT_EQ(Count(service, "raw_missing"), 2);
+  EXPECT_EQ(support::CountOf(service, "raw_missing"), 2);
   Send(9);
   EXPECT_EQ(service.Report().state, HealthState::kDegraded) << "and the next one is told again";
 }
@@ -309,11 +311,11 @@ TEST_F(RecorderOfNumbers, OneJumpOfTheNumbersIsNoLoss) {
   for (std::int64_t seq = 0; seq < 20; ++seq) Send(seq);
   Send(900'000'000);
   for (std::int64_t seq = 20; seq < 40; ++seq) Send(seq);
-  EXPECT_EQ(Count(service, "raw_missing"), 0);
-  EXPECT_EQ(Count(service, "second_publishers_messages"), 1);
+  EXPECT_EQ(support::CountOf(service, "raw_missing"), 0);
+  EXPECT_EQ(support::CountOf(service, "second_publishers_messages"), 1);
   EXPECT_EQ(service.Report().state, HealthState::kOk) << service.Report().reason;
   service.Flush();
-  EXPECT_EQ(Count(service, "events"), 42) << "it is recorded all the same";
+  EXPECT_EQ(support::CountOf(service, "events"), 42) << "it is recorded all the same";
 }
 
 TEST_F(RecorderOfNumbers, TwoPublishersAreRecordedAndToldUntilAMinuteAfter) {
@@ -326,14 +328,14 @@ TEST_F(RecorderOfNumbers, TwoPublishersAreRecordedAndToldUntilAMinuteAfter) {
   auto report = service.Report();
   EXPECT_EQ(report.state, HealthState::kDegraded);
   EXPECT_EQ(report.reason.rfind("NAV_RAW: two publishers; all is recorded", 0), 0U) << report.reason;
-  EXPECT_EQ(Count(service, "second_publishers_messages"), 20);
-  EXPECT_EQ(Count(service, "raw_missing"), 0);
+  EXPECT_EQ(support::CountOf(service, "second_publishers_messages"), 20);
+  EXPECT_EQ(support::CountOf(service, "raw_missing"), 0);
   service.Flush();
-  EXPECT_EQ(Count(service, "events"), 42);
+  EXPECT_EQ(support::CountOf(service, "events"), 42);
   Pass(service, 60);
   report = service.Report();
   EXPECT_EQ(report.state, HealthState::kOk) << report.reason;
-  EXPECT_EQ(Count(service, "second_publishers_messages"), 20);
+  EXPECT_EQ(support::CountOf(service, "second_publishers_messages"), 20);
 }
 
 // For its lifetime no file can grow: writes fail as on a full disk.
@@ -361,15 +363,13 @@ class FullDisk {
 TEST_F(Recorder, GoesOnInANewLogWhenADiskThatWasFullIsNotAnyMore) {
   Service service = Make();
   const auto first = service.log_file();
-  bus::Publish(bus_, bus::kLidarNmea, lidar_nmea_t{});
-  HandleAll();
+  Send(bus::kLidarNmea, lidar_nmea_t{});
   service.Flush();
   HealthReport report_when_full;
   {
     const FullDisk full;
     for (int i = 0; i < 3; ++i) {
-      bus::Publish(bus_, bus::kLidarNmea, lidar_nmea_t{});
-      HandleAll();
+      Send(bus::kLidarNmea, lidar_nmea_t{});
       service.Flush();
       now_ += seconds(1);
       service.AdvanceTo(now_);
@@ -381,12 +381,11 @@ TEST_F(Recorder, GoesOnInANewLogWhenADiskThatWasFullIsNotAnyMore) {
   EXPECT_EQ(report_when_full.reason.rfind("not recording: ", 0), 0U) << report_when_full.reason;
   EXPECT_EQ(service.TakeWarnings().size(), 1U) << "once, not at each attempt";
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1) << "attempts leave no empty logs";
-  EXPECT_EQ(Count(service, "lost"), 3);
+  EXPECT_EQ(support::CountOf(service, "lost"), 3);
 
   now_ += seconds(1);
   service.AdvanceTo(now_);
-  bus::Publish(bus_, bus::kLidarNmea, lidar_nmea_t{});
-  HandleAll();
+  Send(bus::kLidarNmea, lidar_nmea_t{});
   service.Flush();
   EXPECT_EQ(service.Report().state, HealthState::kDegraded);
   EXPECT_EQ(service.Report().reason.rfind("recording again; 3 events lost", 0), 0U) << service.Report().reason;

@@ -9,17 +9,17 @@ TEST_F(Rotation, ALogThatIsDeletedIsFollowedByAnother) {
   Service service = Make();
   Send(10);
   service.Flush();
-  EXPECT_EQ(Count(service, "events"), 11);
-  const auto num_bytes = Count(service, "bytes");
+  EXPECT_EQ(support::CountOf(service, "events"), 11);
+  const auto num_bytes = support::CountOf(service, "bytes");
   fs::remove_all(folder_);
   service.Flush();
   EXPECT_EQ(service.Report().state, HealthState::kFailed);
   EXPECT_NE(service.Report().reason.find("was deleted while it was recorded: 11 events"), std::string::npos) << service.Report().reason;
-  EXPECT_EQ(Count(service, "events"), 0);
-  EXPECT_EQ(Count(service, "bytes"), 0);
-  EXPECT_EQ(Count(service, "lost"), 11);
-  EXPECT_EQ(Count(service, "lost_bytes"), num_bytes);
-  EXPECT_EQ(Count(service, "files_disturbed"), 1);
+  EXPECT_EQ(support::CountOf(service, "events"), 0);
+  EXPECT_EQ(support::CountOf(service, "bytes"), 0);
+  EXPECT_EQ(support::CountOf(service, "lost"), 11);
+  EXPECT_EQ(support::CountOf(service, "lost_bytes"), num_bytes);
+  EXPECT_EQ(support::CountOf(service, "files_disturbed"), 1);
   service.AdvanceTo(now_);
   service.Flush();
   Send(1);
@@ -38,7 +38,7 @@ TEST_F(Rotation, ALogThatIsReplacedByAnotherFileIsLostAndTheOtherFileIsLeftAlone
   fs::rename(folder_ / "other", log);
   service.Flush();
   EXPECT_NE(service.Report().reason.find("was replaced by another file"), std::string::npos) << service.Report().reason;
-  EXPECT_EQ(Count(service, "lost"), 11);
+  EXPECT_EQ(support::CountOf(service, "lost"), 11);
   service.AdvanceTo(now_);
   Send(1);
   service.Flush();
@@ -51,7 +51,7 @@ TEST_F(Rotation, ALogThatIsCutIsFollowedByAnotherAndWhatItLostIsCounted) {
   Service service = Make();
   Send(10);
   service.Flush();
-  const auto kept = Count(service, "bytes");
+  const auto kept = support::CountOf(service, "bytes");
   Send(20);
   service.Flush();
   const auto log = service.log_file();
@@ -59,9 +59,9 @@ TEST_F(Rotation, ALogThatIsCutIsFollowedByAnotherAndWhatItLostIsCounted) {
   fs::resize_file(log, static_cast<std::uintmax_t>(kept));
   Send(5);  // goes to the end of what is left
   service.Flush();
-  EXPECT_EQ(Count(service, "lost"), 20);
-  EXPECT_EQ(Count(service, "lost_bytes"), size - kept);
-  EXPECT_EQ(Count(service, "events"), 1 + 15);
+  EXPECT_EQ(support::CountOf(service, "lost"), 20);
+  EXPECT_EQ(support::CountOf(service, "lost_bytes"), size - kept);
+  EXPECT_EQ(support::CountOf(service, "events"), 1 + 15);
   EXPECT_EQ(service.Report().state, HealthState::kDegraded);
   EXPECT_NE(service.Report().reason.find("was cut from "), std::string::npos) << service.Report().reason;
   service.AdvanceTo(now_);
@@ -93,32 +93,32 @@ TEST_F(Rotation, ALongLogThatIsCutSaysWhatItLostToAShareOfIt) {
   for (int i = 0; i < kNumBlocks; ++i) {
     Send(1);
     service.Flush();
-    if (i + 1 == kNumBlocks / 2) half_bytes = Count(service, "bytes");
+    if (i + 1 == kNumBlocks / 2) half_bytes = support::CountOf(service, "bytes");
     if (i == 4094) {  // all marks are made, and one more comes of what is cut off of another program's bytes
       std::ofstream(service.log_file(), std::ios::app) << "of another program";
       service.Flush();
       fs::resize_file(service.log_file(), fs::file_size(service.log_file()) - 1);
       service.Flush();
-      EXPECT_EQ(Count(service, "lost"), 0);
+      EXPECT_EQ(support::CountOf(service, "lost"), 0);
     }
   }
   fs::resize_file(service.log_file(), static_cast<std::uintmax_t>(half_bytes));
   service.Flush();
-  EXPECT_GE(Count(service, "lost"), kNumBlocks / 2);
-  EXPECT_LE(Count(service, "lost"), kNumBlocks / 2 + 8);
-  EXPECT_EQ(Count(service, "lost") + Count(service, "events"), kNumBlocks + 1);
+  EXPECT_GE(support::CountOf(service, "lost"), kNumBlocks / 2);
+  EXPECT_LE(support::CountOf(service, "lost"), kNumBlocks / 2 + 8);
+  EXPECT_EQ(support::CountOf(service, "lost") + support::CountOf(service, "events"), kNumBlocks + 1);
 }
 
 TEST_F(Rotation, ALogThatIsEmptiedIsLostWhole) {
   Service service = Make();
   Send(10);
   service.Flush();
-  const auto num_bytes = Count(service, "bytes");
+  const auto num_bytes = support::CountOf(service, "bytes");
   fs::resize_file(service.log_file(), 0);
   service.Flush();
-  EXPECT_EQ(Count(service, "lost"), 11);
-  EXPECT_EQ(Count(service, "lost_bytes"), num_bytes);
-  EXPECT_EQ(Count(service, "events"), 0);
+  EXPECT_EQ(support::CountOf(service, "lost"), 11);
+  EXPECT_EQ(support::CountOf(service, "lost_bytes"), num_bytes);
+  EXPECT_EQ(support::CountOf(service, "events"), 0);
 }
 
 TEST_F(Rotation, ALogThatIsRenamedLosesNothingAndIsFollowedByAnother) {
@@ -133,8 +133,8 @@ TEST_F(Rotation, ALogThatIsRenamedLosesNothingAndIsFollowedByAnother) {
   service.AdvanceTo(now_);
   Send(4);
   service.Flush();
-  EXPECT_EQ(Count(service, "lost"), 0);
-  EXPECT_EQ(Count(service, "files_disturbed"), 1);
+  EXPECT_EQ(support::CountOf(service, "lost"), 0);
+  EXPECT_EQ(support::CountOf(service, "files_disturbed"), 1);
   EXPECT_EQ(Files().size(), 2U);
   EXPECT_EQ(Recorded(), UpTo(20));
   EXPECT_EQ(service.Report().state, HealthState::kDegraded);
@@ -150,8 +150,8 @@ TEST_F(Rotation, ALogThatIsWrittenToTwiceCountsOnce) {
     Send(1);
     service.Flush();
   }
-  EXPECT_EQ(Count(service, "files_disturbed"), 1);
-  EXPECT_EQ(Count(service, "lost"), 0);
+  EXPECT_EQ(support::CountOf(service, "files_disturbed"), 1);
+  EXPECT_EQ(support::CountOf(service, "lost"), 0);
 }
 
 // The new folder may be on another disk: room is looked for there, before anything is written.
@@ -173,7 +173,7 @@ TEST_F(Rotation, AFolderThatIsRenamedIsMadeAnewAndItsReserveHolds) {
   service.AdvanceTo(now_);
   Send(5);
   service.Flush();
-  EXPECT_EQ(Count(service, "lost"), 0);
+  EXPECT_EQ(support::CountOf(service, "lost"), 0);
   EXPECT_FALSE(is_asked_of_nothing);
   EXPECT_EQ(Recorded(), (std::vector<std::int64_t>{10, 11, 12, 13, 14}));
   fs::remove_all(folder_);
@@ -192,7 +192,7 @@ TEST_F(Rotation, ALogToWhichAnotherProgramWritesIsFollowedByAnother) {
   Send(1);
   service.Flush();
   EXPECT_EQ(Files().size(), 2U);
-  EXPECT_EQ(Count(service, "lost"), 0);
+  EXPECT_EQ(support::CountOf(service, "lost"), 0);
 }
 
 TEST_F(Rotation, ALogIsLockedWhileItIsRecorded) {

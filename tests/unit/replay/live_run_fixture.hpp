@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "common/bus/log_file.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "services/tracker/params.hpp"
 #include "services/tracker/service.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
@@ -84,8 +84,7 @@ class LiveRun : public ::testing::Test {
   void Deliver(const bus::Channel& channel, const Message& message) {
     if (!process_) return;
     bus::Publish(process_->bus, channel, message);
-    while (process_->bus.HandleOnce()) {
-    }
+    support::HandleAll(process_->bus);
   }
   template <typename Message>
   void Send(const bus::Channel& channel, const Message& message) {

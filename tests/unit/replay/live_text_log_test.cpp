@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/memory_bus.hpp"
 #include "services/navigator/io/text_log_player.hpp"
 #include "services/navigator/service.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
@@ -50,14 +50,12 @@ class LiveTextLog : public ::testing::Test {
     for (int round = 0; !player.is_finished(); ++round) {
       player.Play(now, {[&service](Utime time) { service.AdvanceTo(time); },
                         [&service](Utime time, Bytes line, const std::string& name) { service.OnDatagram(time, line, name); }});
-      while (bus.HandleOnce()) {
-      }
+      support::HandleAll(bus);
       now += 7ms + std::chrono::milliseconds(round % 7);
     }
     EXPECT_EQ(service.Report().reason.find("off UTC"), std::string::npos) << service.Report().reason;
     service.Finish(player.time());
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
     return messages;
   }
 

@@ -1,6 +1,8 @@
 #include "services/segmenter/core/measure.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <random>
 
 #include "tests/unit/segmenter/scan_maker.hpp"
 
@@ -57,6 +59,42 @@ TEST(Measure, TakesTheFirstOfEquallyNearReturns) {
   scan.head.rings[0].elevation_rad = 0.0F;
   scan.columns.azimuth_rad = {0.0F, 0.0F, 0.0F, 0.0F};
   EXPECT_EQ(MeasureAll(scan)[0].nearest_time, test::kScanTime + microseconds(55));
+}
+
+// All numbers that are not of the shape, against the obvious code.
+TEST(Measure, GivesTheExtremesAndMeansOfItsReturns) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    auto scan = test::EmptyScan({.num_columns = 200, .num_rings = 8});
+    for (int i = 0; i < 30; ++i) {
+      test::SetReturn(scan, static_cast<int>(random() % 200), static_cast<int>(random() % 8), 5.0 + 0.01 * (random() % 3000), 0,
+                      static_cast<int>(random() % 256));
+    }
+    const auto returns = ClassifyReturns(scan, {}).returns;
+    const auto segment = MeasureAll(scan)[0];
+    const auto reflectivity = [&scan](const Return& one) { return int{scan.columns.reflectivity[static_cast<std::size_t>(one.cell)]}; };
+    const auto squared_m2 = [](const Return& one) { return Eigen::Vector3d(one.point.x_m, one.point.y_m, one.point.z_m).squaredNorm(); };
+    const auto z_m = [](const Return& one) { return one.point.z_m; };
+    const auto mean = [&returns](const auto& of) {
+      double sum = 0.0;
+      for (const auto& one : returns) sum += of(one);
+      return sum / static_cast<double>(returns.size());
+    };
+    EXPECT_EQ(segment.num_points, static_cast<std::int32_t>(returns.size()));
+    EXPECT_EQ(segment.min_reflectivity, reflectivity(std::ranges::min(returns, {}, reflectivity)));
+    EXPECT_EQ(segment.max_reflectivity, reflectivity(std::ranges::max(returns, {}, reflectivity)));
+    EXPECT_NEAR(segment.mean_reflectivity, mean(reflectivity), 1e-4);
+    EXPECT_EQ(segment.min_z_m, z_m(std::ranges::min(returns, {}, z_m)));
+    EXPECT_EQ(segment.max_z_m, z_m(std::ranges::max(returns, {}, z_m)));
+    EXPECT_EQ(segment.top.z_m, segment.max_z_m);
+    EXPECT_NEAR(segment.centroid.z_m, mean(z_m), 1e-5);
+    EXPECT_NEAR(segment.centroid.x_m, mean([](const Return& one) { return one.point.x_m; }), 1e-4);
+    EXPECT_NEAR(segment.centroid.y_m, mean([](const Return& one) { return one.point.y_m; }), 1e-4);
+    const auto& nearest = std::ranges::min(returns, {}, squared_m2);
+    EXPECT_EQ(segment.nearest.x_m, nearest.point.x_m);
+    EXPECT_EQ(segment.nearest.y_m, nearest.point.y_m);
+  }
 }
 
 TEST(Measure, GivesSizeHeightAndReflectivityOfABoat) {

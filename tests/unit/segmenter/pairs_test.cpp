@@ -170,6 +170,53 @@ TEST(PairFinder, ReachesBehindWhatIsNearer) {
   }
 }
 
+// In a column of each something nearer and something farther shows: every two ends of the two columns may be the closest.
+TEST(PairFinder, MeasuresFromTheEndsOfTwoColumnsThatAreClosest) {
+  const double upper = std::cos(DegToRad(2.0));
+  for (const auto& [one_m, other_m, closest_m] : {std::tuple{std::pair{10.0, 11.0}, std::pair{10.8, 12.0}, std::pair{11.0, 10.8}},
+                                                  {std::pair{10.8, 12.0}, std::pair{10.0, 11.0}, std::pair{10.8, 11.0}},
+                                                  {std::pair{10.0, 12.0}, std::pair{8.0, 12.1}, std::pair{12.0, 12.1}},
+                                                  {std::pair{10.0, 12.0}, std::pair{10.1, 14.0}, std::pair{10.0, 10.1}}}) {
+    PieceScene scene;
+    for (const int ring : {0, 1, 2}) {
+      const auto range_of = [&](const std::pair<double, double>& near_and_far_m) {
+        return ring == 0   ? near_and_far_m.first / upper
+               : ring == 1 ? (near_and_far_m.first + near_and_far_m.second) / 2.0
+                           : near_and_far_m.second / upper;
+      };
+      scene.Add(0, 10, ring, range_of(one_m));
+      scene.Add(1, 14, ring, range_of(other_m));
+    }
+    scene.Build();
+    const auto pair = FindPair(scene, 0, 1);
+    ASSERT_TRUE(pair);
+    const auto [a_m, b_m] = closest_m;
+    EXPECT_NEAR(pair->gap_m, std::sqrt(a_m * a_m + b_m * b_m - 2.0 * a_m * b_m * std::cos(DegToRad(4.0))), kRounding) << a_m << " and " << b_m;
+    EXPECT_NEAR(Of(*pair, PairFeature::kRange), std::min(a_m, b_m), kRounding);
+    EXPECT_NEAR(Of(*pair, PairFeature::kRadialGap), std::abs(a_m - b_m), kRounding);
+  }
+}
+
+// More drops than are looked at: what is larger is looked at as ever, with all of the reach.
+TEST(PairFinder, LeavesOutDropsAloneWhereThereAreTooMany) {
+  for (const auto& [num_rings, has_drops] : {std::pair{45, true}, {46, false}}) {  // 16 200 and 16 560 drops
+    PieceScene scene(num_rings + 2);
+    scene.AddRow(0, 10, 4, num_rings + 1, 10.0);
+    scene.AddRow(1, 27, 4, num_rings + 1, 10.0);  // 2.43 m
+    std::int32_t piece = 2;
+    for (int ring = 0; ring < num_rings; ++ring) {
+      for (int column = 0; column < PieceScene::kColumns; ++column) scene.Add(piece++, column, ring, 9.0);  // too near to be pairs
+    }
+    scene.Add(piece++, 100, num_rings, 60.0);
+    scene.Add(piece++, 101, num_rings, 60.0);
+    scene.Build();
+    EXPECT_TRUE(FindPair(scene, 0, 1)) << num_rings;
+    PairFinder finder(kLidarAboveWaterM);
+    const auto pairs = finder.Find(scene.grid, scene.pieces, kReach, false);
+    EXPECT_EQ(std::ranges::any_of(pairs, [](const PiecePair& pair) { return pair.one > 1; }), has_drops) << num_rings;
+  }
+}
+
 // Four pieces that wind about each other.
 void AddWinding(PieceScene& scene, std::uint64_t seed, const std::function<std::int32_t(std::int32_t)>& piece_of, bool is_mirrored, int turn) {
   std::mt19937_64 random(seed);

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <map>
 
-#include "common/bus/memory_bus.hpp"
 #include "common/config/text_config.hpp"
 #include "lookout/segments_t.hpp"
+#include "tests/support/bus_fixture.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
@@ -17,27 +17,16 @@
 namespace lookout::segmenter {
 namespace {
 
-class SegmenterService : public ::testing::Test {
+class SegmenterService : public support::BusTest {
  protected:
   SegmenterService() : service_(bus_, Params{}) {
     bus_.SubscribeRaw(bus::kSegments, [this](std::string_view, Bytes bytes) { answers_.emplace_back(bytes.begin(), bytes.end()); });
   }
 
-  void Send(const lidar_scan_t& message) {
-    bus::Publish(bus_, bus::kLidarScan, message);
-    while (bus_.HandleOnce()) {
-    }
-  }
+  void Send(const lidar_scan_t& message) { BusTest::Send(bus::kLidarScan, message); }
 
-  std::int64_t Count(const std::string& name) const {
-    for (const auto& counter : service_.Report().counters) {
-      if (counter.name == name) return counter.count;
-    }
-    ADD_FAILURE() << "no counter " << name;
-    return -1;
-  }
+  std::int64_t Count(const std::string& name) const { return support::CountOf(service_, name); }
 
-  bus::MemoryBus bus_;
   Service service_;
   std::vector<std::vector<std::uint8_t>> answers_;
 };

@@ -12,6 +12,7 @@
 #include "lookout/health_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
+#include "tests/support/messages.hpp"
 #include "tools/top/board.hpp"
 
 namespace lookout::top {
@@ -54,8 +55,7 @@ inline obstacles_t TurnOf(std::int64_t seq, std::vector<obstacle_t> obstacles, i
   turn.seq = seq;
   turn.part_index = part_index;
   turn.num_parts = num_parts;
-  turn.obstacles = std::move(obstacles);
-  turn.num_obstacles = static_cast<std::int32_t>(turn.obstacles.size());
+  support::Fill(turn, std::move(obstacles));
   return turn;
 }
 

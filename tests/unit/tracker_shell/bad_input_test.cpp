@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "services/tracker/service.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 #include "tests/unit/tracker_shell/service_fixture.hpp"
 
@@ -257,12 +257,10 @@ TEST_F(TrackerBadInput, InAnyOrderDoubledAndMissingMakesNoWrongTrack) {
     std::ranges::stable_sort(messages, {}, [](const auto& one) { return one.first; });
     for (const auto& [time_s, message] : messages) {
       bus.Publish(*message.first, message.second);
-      while (bus.HandleOnce()) {
-      }
+      support::HandleAll(bus);
     }
     service.Finish();
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
     EXPECT_GT(tracks_.size(), 10U);
     EXPECT_LE(tracks_.size(), 60U);
     ExpectRightTracks(0, {0.0});

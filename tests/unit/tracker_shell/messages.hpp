@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "services/tracker/params.hpp"
+#include "tests/support/messages.hpp"
 
 namespace lookout::tracker::test {
 
@@ -20,6 +22,7 @@ inline constexpr std::int64_t kScanUs = 100'000;
 inline constexpr std::int64_t kLastShotUs = 99'000;  // of a scan
 inline constexpr std::int32_t kNumColumns = 10;
 inline constexpr std::int32_t kNumRings = 2;
+inline constexpr GeodeticPlace kLake{43.7, -72.3, 100.0};
 
 /// A boat of 2 m x 1 m that wants 5 m of room.
 inline Params MakeParams() {
@@ -57,91 +60,46 @@ inline obstacle_t MakeObstacle(std::int32_t id, std::int64_t utime_us, std::pair
 }
 
 inline obstacles_t MakeObstacles(std::int64_t offset_us, std::int64_t seq, std::vector<obstacle_t> obstacles) {
-  obstacles_t message{};
-  message.utime_us = kStartUs + offset_us;
-  message.seq = seq;
-  message.raw_seq = seq;
-  message.end_utime_us = message.utime_us + kLastShotUs;
-  message.num_parts = 1;
-  message.datum_latitude_deg = 43.7;
-  message.datum_longitude_deg = -72.3;
-  message.datum_ellipsoid_height_m = 100.0;
-  message.obstacles = std::move(obstacles);
-  message.num_obstacles = static_cast<std::int32_t>(message.obstacles.size());
+  auto message = support::OfScan<obstacles_t>(kStartUs + offset_us, seq, kLastShotUs);
+  support::SetDatum(message, kLake);
+  support::Fill(message, std::move(obstacles));
   return message;
 }
 
 inline lidar_scan_t MakeScan(std::int64_t offset_us, std::int64_t seq) {
-  lidar_scan_t message{};
-  message.utime_us = kStartUs + offset_us;
-  message.seq = seq;
-  message.raw_seq = seq;
-  message.end_utime_us = message.utime_us + kLastShotUs;
-  message.num_parts = 1;
-  message.range_unit_m = 0.002;
-  message.num_rings = kNumRings;
-  message.elevation_rad = {-0.1F, 0.1F};
-  message.azimuth_offset_rad = message.origin_height_m = {0.0F, 0.0F};
-  message.time_offset_ns = {0, 2304};
-  message.num_returns = 1;
-  message.return_kind = {lidar_scan_t::RETURN_STRONGEST};
-  message.num_turn_columns = message.num_columns = kNumColumns;
-  message.num_cells = kNumColumns * kNumRings;
+  auto message = support::OfScan<lidar_scan_t>(kStartUs + offset_us, seq, kLastShotUs);
+  std::vector<float> azimuth_rad;
+  std::vector<std::int32_t> time_ns;
   for (int column = 0; column < kNumColumns; ++column) {
-    message.azimuth_rad.push_back(0.6F * static_cast<float>(column));
-    message.time_ns.push_back(9'900'000 * column);
-    for (int ring = 0; ring < kNumRings; ++ring) {
-      message.range.push_back(static_cast<std::int16_t>(1000 * (column + 1) + ring));
-      message.reflectivity.push_back(7);
-    }
+    azimuth_rad.push_back(0.6F * static_cast<float>(column));
+    time_ns.push_back(9'900'000 * column);
+  }
+  support::FillColumns(message, azimuth_rad, time_ns, 0);
+  for (int cell = 0; cell < message.num_cells; ++cell) {
+    message.range[static_cast<std::size_t>(cell)] = static_cast<std::int16_t>(1000 * (cell / kNumRings + 1) + cell % kNumRings);
   }
   return message;
 }
 
 /// Over empty water, a column each half degree from one azimuth clockwise to another: what a lidar sends whose field of view is set so.
 inline lidar_scan_t MakeSweep(std::int64_t offset_us, std::int64_t seq, double from_deg = 0.0, double to_deg = 360.0) {
-  auto message = MakeScan(offset_us, seq);
-  message.azimuth_rad.clear();
-  message.time_ns.clear();
+  auto message = support::OfScan<lidar_scan_t>(kStartUs + offset_us, seq, kLastShotUs);
+  std::vector<float> azimuth_rad;
+  std::vector<std::int32_t> time_ns;
   for (double azimuth_deg = from_deg; azimuth_deg < to_deg; azimuth_deg += 0.5) {
-    message.azimuth_rad.push_back(static_cast<float>(DegToRad(azimuth_deg)));
-    message.time_ns.push_back(static_cast<std::int32_t>(2.75e5 * azimuth_deg));
+    azimuth_rad.push_back(static_cast<float>(DegToRad(azimuth_deg)));
+    time_ns.push_back(static_cast<std::int32_t>(2.75e5 * azimuth_deg));
   }
-  message.num_turn_columns = message.num_columns = static_cast<std::int32_t>(message.azimuth_rad.size());
-  message.num_cells = message.num_columns * kNumRings;
-  message.range.assign(static_cast<std::size_t>(message.num_cells), 0);
-  message.reflectivity.assign(static_cast<std::size_t>(message.num_cells), 0);
+  support::FillColumns(message, azimuth_rad, time_ns, 0);
   return message;
 }
 
 /// Of a scan in which nothing came back.
-inline segments_t MakeNoSegments(const lidar_scan_t& scan) {
-  segments_t message{};
-  message.utime_us = scan.utime_us;
-  message.seq = scan.seq;
-  message.raw_seq = scan.raw_seq;
-  message.end_utime_us = scan.end_utime_us;
-  message.num_parts = 1;
-  message.num_rings = scan.num_rings;
-  message.num_returns = 1;
-  message.num_columns = scan.num_columns;
-  message.num_cells = scan.num_cells;
-  message.label.assign(static_cast<std::size_t>(scan.num_cells), 0);
-  return message;
-}
+inline segments_t MakeNoSegments(const lidar_scan_t& scan) { return support::LabelsOf(scan, 0); }
 
 inline segments_t MakeSegments(std::int64_t offset_us, std::int64_t seq) {
-  segments_t message{};
-  message.utime_us = kStartUs + offset_us;
-  message.seq = seq;
-  message.raw_seq = seq;
-  message.end_utime_us = message.utime_us + kLastShotUs;
-  message.num_parts = 1;
-  message.num_rings = kNumRings;
-  message.num_returns = 1;
-  message.num_columns = kNumColumns;
-  message.num_cells = kNumColumns * kNumRings;
-  for (int cell = 0; cell < message.num_cells; ++cell) message.label.push_back(static_cast<std::int16_t>(cell));
+  auto message = support::LabelsOf(MakeScan(offset_us, seq), 0);
+  std::iota(message.label.begin(), message.label.end(), std::int16_t{0});
   return message;
 }
 
@@ -150,9 +108,10 @@ inline pose_t MakePose(std::int64_t offset_us, std::int64_t seq) {
   pose_t message{};
   message.utime_us = kStartUs + offset_us;
   message.seq = seq;
-  message.datum_latitude_deg = message.latitude_deg = 43.7;
-  message.datum_longitude_deg = message.longitude_deg = -72.3;
-  message.datum_ellipsoid_height_m = message.ellipsoid_height_m = 100.0;
+  support::SetDatum(message, kLake);
+  message.latitude_deg = kLake.latitude_deg;
+  message.longitude_deg = kLake.longitude_deg;
+  message.ellipsoid_height_m = kLake.ellipsoid_height_m;
   for (int i = 0; i < 9; ++i) message.covariance[i][i] = 0.01;
   return message;
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "services/tracker/service.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 #include "tests/unit/tracker_shell/service_fixture.hpp"
 #include "tests/unit/tracker_shell/still_boat_fixture.hpp"
@@ -96,10 +96,7 @@ TEST(TrackerServiceWithAGuardZone, WarnsWithoutPose) {
   Service service(bus, params);
   std::vector<alerts_t> alerts;
   bus::Subscribe<alerts_t>(bus, bus::kAlerts, [&](const alerts_t& message) { alerts.push_back(message); });
-  const auto handle_all = [&bus] {
-    while (bus.HandleOnce()) {
-    }
-  };
+  const auto handle_all = [&bus] { support::HandleAll(bus); };
   service.AdvanceTo(Host(milliseconds(0)));
   service.AdvanceTo(Host(milliseconds(1000)));
   for (int i = 0; i < 50; ++i) {
@@ -139,11 +136,9 @@ TEST(TrackerServiceWithAGuardZone, RingsWithoutPoseForABoatBesideABuoyThatWasAck
       obstacles.push_back(test::MakeObstacle(id, test::kStartUs + test::kScanUs * i, place_m));
     }
     bus::Publish(bus, bus::kObstacles, test::InTheVesselFrame(test::MakeObstacles(test::kScanUs * i, i, obstacles)));
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
     service.AdvanceTo(Host(milliseconds(1010 + 100 * i)));
-    while (bus.HandleOnce()) {
-    }
+    support::HandleAll(bus);
   };
   const std::pair<double, double> buoy_m{5.0, -4.0};
   service.AdvanceTo(Host(milliseconds(0)));

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/memory_bus.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 #include "tests/unit/tracker_shell/service_fixture.hpp"
 #include "tests/unit/tracker_shell/still_boat_fixture.hpp"
@@ -247,8 +247,7 @@ TEST(TrackerServiceWithoutALidar, UsesEachScanAsSoonAsPoseIsThere) {
   bus::Subscribe<tracks_t>(bus, bus::kTracks, [&](const tracks_t& message) { num_unknown += message.sight == tracks_t::SIGHT_UNKNOWN ? 1 : 0; });
   for (int i = 0; i < 30; ++i) bus::Publish(bus, bus::kPose, test::MakePose(20'000 * i, i));
   for (int i = 0; i < 5; ++i) bus::Publish(bus, bus::kObstacles, test::MakeObstacles(test::kScanUs * i, i, {}));
-  while (bus.HandleOnce()) {
-  }
+  support::HandleAll(bus);
   EXPECT_EQ(num_unknown, 5);
 }
 

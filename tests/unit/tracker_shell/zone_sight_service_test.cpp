@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/memory_bus.hpp"
 #include "services/tracker/alert_text.hpp"
 #include "services/tracker/service.hpp"
+#include "tests/support/bus_fixture.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
 #include "tests/unit/tracker_shell/service_fixture.hpp"
 
@@ -24,17 +24,8 @@ Params MakeZoneParams() {
   return params;
 }
 
-class TrackerServiceZone : public ::testing::Test {
+class TrackerServiceZone : public support::BusTest {
  protected:
-  void SetUp() override {
-    bus::Subscribe<alerts_t>(bus_, bus::kAlerts, [this](const alerts_t& message) { alerts_.push_back(message); });
-  }
-  template <typename Message>
-  void Send(const bus::Channel& channel, const Message& message) {
-    bus::Publish(bus_, channel, message);
-    while (bus_.HandleOnce()) {
-    }
-  }
   // Scans over empty water of a lidar that fires from one azimuth clockwise to another.
   void Scans(int count, double from_deg, double to_deg) {
     for (int i = 0; i < count; ++i, ++number_) {
@@ -50,9 +41,8 @@ class TrackerServiceZone : public ::testing::Test {
   // The last word of the zone; empty: none.
   alert_t Told() const { return alerts_.back().alerts.empty() ? alert_t{} : alerts_.back().alerts.front(); }
 
-  bus::MemoryBus bus_;
   Service service_{bus_, MakeZoneParams()};
-  std::vector<alerts_t> alerts_;
+  support::Kept<alerts_t> alerts_{bus_, bus::kAlerts};
   int number_ = 1;
 };
 

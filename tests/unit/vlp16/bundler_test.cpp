@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
+#include "tests/support/counters.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::vlp16 {
@@ -13,12 +14,6 @@ using test::Azimuths;
 using test::MakeDataPacket;
 
 const Utime kTime = Utime(std::chrono::seconds(1000));
-
-std::int64_t CountOf(const Bundler& bundler, std::string_view name) {
-  const auto counters = bundler.counters();
-  const auto found = std::ranges::find(counters, name, &Counter::name);
-  return found != counters.end() ? found->count : -1;
-}
 
 TEST(Bundler, ClosesWhenItHolds24Payloads) {
   Bundler bundler(2368, 8308, 0.0);
@@ -98,10 +93,10 @@ TEST(Bundler, RefusesWhatIsNotOfTheLidarByReason) {
   bundler.Add(kTime, 2368, {});
   bundler.Add(kTime, 8308, data);
   bundler.Add(Utime(std::chrono::hours(24 * 365 * 300)), 2368, data);
-  EXPECT_EQ(CountOf(bundler, "datagrams_other_port"), 1);
-  EXPECT_EQ(CountOf(bundler, "data_wrong_size"), 2);
-  EXPECT_EQ(CountOf(bundler, "position_wrong_size"), 1);
-  EXPECT_EQ(CountOf(bundler, "datagrams_bad_host_time"), 1);
+  EXPECT_EQ(support::CountOf(bundler, "datagrams_other_port"), 1);
+  EXPECT_EQ(support::CountOf(bundler, "data_wrong_size"), 2);
+  EXPECT_EQ(support::CountOf(bundler, "position_wrong_size"), 1);
+  EXPECT_EQ(support::CountOf(bundler, "datagrams_bad_host_time"), 1);
   EXPECT_FALSE(bundler.Finish(kTime));
 }
 

@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 #include <map>
 
-#include "common/bus/memory_bus.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/service.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::vlp16 {
@@ -372,7 +372,7 @@ ScanCount CountScans(const std::filesystem::path& file) {
     service.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload);
   }
   service.Finish(last);
-  while (bus.HandleOnce()) continue;
+  support::HandleAll(bus);
   return count;
 }
 

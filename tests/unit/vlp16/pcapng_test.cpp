@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "services/vlp16/io/capture_reader.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::vlp16 {
@@ -86,12 +87,7 @@ class Pcapng : public ::testing::Test {
     counters_ = reader.counters();
     return lines;
   }
-  std::int64_t Counted(std::string_view name) const {
-    for (const auto& counter : counters_) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
-  }
+  std::int64_t Counted(std::string_view name) const { return support::CountOf(counters_, name); }
   std::string FaultOf(const std::string& bytes) {
     try {
       Read(bytes);

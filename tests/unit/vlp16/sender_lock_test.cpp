@@ -10,12 +10,12 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "common/bus/memory_bus.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/service.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::vlp16 {
@@ -140,14 +140,14 @@ class LockRun {
     for (const auto& arrival : arrivals) {
       service_.AdvanceTo(arrival.time);
       service_.OnDatagram(arrival.time, arrival.udp_port, arrival.payload, arrival.sender);
-      while (bus_.HandleOnce()) continue;
+      support::HandleAll(bus_);
     }
     published_.report = service_.Report();
     return *this;
   }
   const Published& Finish(Utime time) {
     service_.Finish(time);
-    while (bus_.HandleOnce()) continue;
+    support::HandleAll(bus_);
     return published_;
   }
   const Published& published() const { return published_; }

@@ -5,11 +5,12 @@
 #include <gtest/gtest.h>
 #include <map>
 
-#include "common/bus/memory_bus.hpp"
 #include "lookout/lidar_clock_t.hpp"
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "services/vlp16/wire.hpp"
+#include "tests/support/counters.hpp"
+#include "tests/support/memory_bus.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::vlp16 {
@@ -32,9 +33,7 @@ struct Recorded {
   Recorded() {
     bus.SubscribeAll([this](std::string_view channel, Bytes bytes) { messages.push_back({std::string(channel), {bytes.begin(), bytes.end()}}); });
   }
-  void Handle() {
-    while (bus.HandleOnce()) continue;
-  }
+  void Handle() { support::HandleAll(bus); }
   template <typename T>
   std::vector<T> All(const bus::Channel& channel) const {
     std::vector<T> all;
@@ -57,12 +56,6 @@ void Feed(Service& service, SpinningSensor sensor, int num_packets) {
     if (i % 10 == 0) service.OnDatagram(host_time, 8308, test::MakePositionPacket(sensor.stamp_us(), 2, test::kValidRmc));
     if (i % 50 == 0) service.OnDatagram(host_time, 2368, test::Payload(format::kDataPacketSizeBytes, 7));
   }
-}
-
-std::int64_t CountOf(const Service& service, std::string_view name) {
-  const auto counters = service.Report().counters;
-  const auto found = std::ranges::find(counters, name, &Counter::name);
-  return found != counters.end() ? found->count : -1;
 }
 
 TEST(Service, PublishesNothingWhenNothingCame) {
@@ -102,8 +95,8 @@ TEST(Service, PublishesRawThenClockThenScan) {
   const auto raw =
       std::find_if(std::make_reverse_iterator(first), out.messages.rend(), [](const Message& m) { return m.channel == "LIDAR_PACKETS"; });
   EXPECT_EQ(bus::Decode<lidar_packets_t>(raw->bytes)->seq, scans[0].raw_seq);
-  EXPECT_EQ(CountOf(service, "data_bad_flag"), 2);
-  EXPECT_EQ(CountOf(service, "data_lost"), 2);
+  EXPECT_EQ(support::CountOf(service, "data_bad_flag"), 2);
+  EXPECT_EQ(support::CountOf(service, "data_lost"), 2);
 }
 
 TEST(Service, GivesTheSameBytesFromItsRawLog) {
@@ -174,7 +167,7 @@ TEST(Service, RefusesABadRawMessageAsAWhole) {
     kFaults[i](message);
     bus::Publish(out.bus, bus::kLidarPackets, message);
     out.Handle();
-    EXPECT_EQ(CountOf(service, "messages_refused"), 1) << i;
+    EXPECT_EQ(support::CountOf(service, "messages_refused"), 1) << i;
     EXPECT_EQ(out.messages.size(), 1U) << i;
   }
 }
@@ -313,11 +306,6 @@ TEST(Service, NamesASensorWhosePacketsAreOfAnotherSize) {
   EXPECT_EQ(service.Report().reason, "no usable lidar packets for 1 s; the last was refused: a packet of another sensor: RoboSense");
 }
 
-std::int64_t CountOf(const HealthReport& report, std::string_view name) {
-  const auto found = std::ranges::find(report.counters, name, &Counter::name);
-  return found != report.counters.end() ? found->count : -1;
-}
-
 TEST(Service, TellsRateRotationAndPhase) {
   Recorded out;
   Service service(out.bus, Params{});
@@ -329,9 +317,9 @@ TEST(Service, TellsRateRotationAndPhase) {
     service.AdvanceTo(host);
   }
   const auto report = service.Report();
-  EXPECT_NEAR(static_cast<double>(CountOf(report, "data_packets_per_s")), 754.0, 20.0);  // bundles are counted when they are full
-  EXPECT_EQ(CountOf(report, "rotation_rpm"), 1200);
-  EXPECT_LE(std::min<std::int64_t>(CountOf(report, "rotation_phase_cdeg"), 36000 - CountOf(report, "rotation_phase_cdeg")), 2);
+  EXPECT_NEAR(static_cast<double>(support::CountOf(report, "data_packets_per_s")), 754.0, 20.0);  // bundles are counted when they are full
+  EXPECT_EQ(support::CountOf(report, "rotation_rpm"), 1200);
+  EXPECT_LE(std::min<std::int64_t>(support::CountOf(report, "rotation_phase_cdeg"), 36000 - support::CountOf(report, "rotation_phase_cdeg")), 2);
 }
 
 TEST(Service, SaysWhenTwoLidarsSendToOnePort) {
@@ -358,7 +346,7 @@ TEST(Service, TellsTemperaturesAndAThermalShutdown) {
   Recorded out;
   Service service(out.bus, Params{});
   auto position = test::MakePositionPacket(0, format::kPpsLocked, "");
-  EXPECT_EQ(CountOf(service.Report(), "top_board_celsius"), -1);
+  EXPECT_EQ(std::ranges::count(service.Report().counters, "top_board_celsius", &Counter::name), 0);
   const auto send = [&] {
     service.OnDatagram(kServiceTime, 8308, position);
     service.AdvanceTo(kServiceTime + milliseconds(200));
@@ -366,7 +354,7 @@ TEST(Service, TellsTemperaturesAndAThermalShutdown) {
   position[format::kTopBoardTemperatureOffset] = 61;
   position[format::kBottomBoardTemperatureOffset] = 58;
   send();
-  EXPECT_EQ(CountOf(service.Report(), "top_board_celsius"), 61);
+  EXPECT_EQ(support::CountOf(service.Report(), "top_board_celsius"), 61);
   EXPECT_EQ(service.Report().state, HealthState::kOk);
   position[format::kThermalStateOffset] = format::kThermalShutdown;
   send();
