@@ -76,9 +76,21 @@ uint32 offset
 uint8 datatype
 uint32 count
 """,
-    'nav_msgs/Odometry': 'Header header\nstring child_frame_id\n' + HEADER,
 }
 
 
-def message_class(name):
-    return genpy.dynamic.generate_dynamic(name, TEXTS[name])[name]
+CLASSES = {}
+
+
+def generated(name):
+    """All classes of a type."""
+    if name not in CLASSES:
+        CLASSES[name] = genpy.dynamic.generate_dynamic(name, TEXTS[name])
+    return CLASSES[name]
+
+
+def ros2_texts():
+    """The same types as ROS 2 has them: no number in the header, and a time of two numbers."""
+    time = '\n' + '=' * 80 + '\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n'
+    return {name: text.replace('uint32 seq\n', '').replace('time stamp', 'builtin_interfaces/Time stamp') + time for name, text in TEXTS.items()}
+
