@@ -91,7 +91,7 @@ std::optional<PerRing<double>> FiringOffsetsNs(const RingCloud& cloud, double pe
   times_ns.reserve(cloud.points.size());
   for (const auto& point : cloud.points) times_ns.push_back(point.time_ns);
   std::ranges::sort(times_ns);
-  const auto num_times = std::ranges::unique(times_ns).begin() - times_ns.begin();
+  const auto num_times = std::unique(times_ns.begin(), times_ns.end()) - times_ns.begin();
   if (4 * num_times < std::ssize(cloud.points)) return offsets_ns;
   PerRing<std::array<double, 3>> sums{};
   const auto base_ns = times_ns.front();
