@@ -3,7 +3,6 @@
 those of the capture, byte for byte, and all else is what was written.
   ros_test.py SOURCE_FOLDER BUILD_FOLDER NPM_FOLDER"""
 import base64
-import hashlib
 import json
 import math
 import pathlib
@@ -20,7 +19,9 @@ import numpy as np
 import pandas
 import rosbag
 
+import logs
 import ros_types
+from logs import digest, events
 
 source, build, npm = (pathlib.Path(argument) for argument in sys.argv[1:4])
 here = source / 'tests/formats'
@@ -36,35 +37,13 @@ POINTS = {  # by driver: name, type of numpy
 FIELD_TYPES = {'u1': 2, '<u2': 4, '<u4': 6, '<f4': 7, '<f8': 8}
 
 
-def run(program, *arguments, code=0, **options):
-    command = [str(bin_folder / f'lookout-{program}'), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, **options)
-    assert done.returncode == code, f'{command}: {done.returncode}\n{done.stdout}{done.stderr}'
-    return done.stdout + done.stderr
+def run(program, *arguments):
+    return logs.run(bin_folder, program, *arguments)
 
 
 def node(script, *arguments, **options):
     shutil.copy(here / script, npm)  # where its packages are
     return subprocess.run(['node', str(npm / script), *map(str, arguments)], check=True, capture_output=True, text=True, **options).stdout
-
-
-def events(log):
-    """Of an lcm-log: (channel, payload)."""
-    data = log.read_bytes()
-    at = 0
-    while at < len(data):
-        _, _, _, num_channel, num_data = struct.unpack_from('>IqqII', data, at)
-        channel = data[at + 28:at + 28 + num_channel].decode()
-        yield channel, data[at + 28 + num_channel:at + 28 + num_channel + num_data]
-        at += 28 + num_channel + num_data
-
-
-def digest(log, channel):
-    sha = hashlib.sha256()
-    for name, payload in events(log):
-        if name == channel:
-            sha.update(payload)
-    return sha.hexdigest()
 
 
 def frames(pcap):
