@@ -204,9 +204,10 @@ class TwoWayMeans {
     }
   }
 
-  // @param value_of  of a point, relative to what is known of its column: for angles the short way round
+  // @param difference    of what a point says to what is known: for angles the short way round
+  // @param least_change  of a ring: when none changes by more, they agree
   template <typename Difference>
-  void Fit(std::vector<double>& first_guess, const Difference& difference) {
+  void Fit(std::vector<double>& first_guess, double least_change, const Difference& difference) {
     of_column_ = first_guess;
     for (int fit = 0; fit < kNumFits; ++fit) {
       std::vector<double> column_sum(num_columns_, 0.0);
@@ -222,9 +223,14 @@ class TwoWayMeans {
         if (Column(i) == CloudColumns::kNoColumn) continue;
         ring_sum[Index(cloud_.points[i].ring)] += difference(cloud_.points[i], of_column_[Index(Column(i))] + of_ring_[Index(cloud_.points[i].ring)]);
       }
+      double change = 0.0;
       for (std::size_t ring = 0; ring < of_ring_.size(); ++ring) {
-        if (num_of_ring_[ring] > 0) of_ring_[ring] += ring_sum[ring] / num_of_ring_[ring];
+        if (num_of_ring_[ring] == 0) continue;
+        const double step = ring_sum[ring] / num_of_ring_[ring];
+        of_ring_[ring] += step;
+        change = std::max(change, std::abs(step));
       }
+      if (change <= least_change) break;
     }
     first_guess = of_column_;
   }
@@ -309,7 +315,13 @@ CloudColumns FindColumns(const RingCloud& cloud) {
     ByAzimuth(cloud, columns);
   }
 
-  const auto turn = [](double to_rad, double from_rad) { return WrapToPi(to_rad - from_rad); };
+  constexpr double kAgreeRad = 1e-8;
+  constexpr double kAgreeNs = 0.1;
+  // The division that wraps an angle takes longer than all else, and is needed where north is crossed alone.
+  const auto turn = [](double to_rad, double from_rad) {
+    const double angle_rad = to_rad - from_rad;
+    return angle_rad >= -kPi && angle_rad < kPi ? angle_rad : WrapToPi(angle_rad);
+  };
   const auto minus = [](double to, double from) { return to - from; };
   const bool is_grid = !columns.is_by_place && !columns.is_by_time;
   TwoWayMeans azimuths(cloud, columns);
@@ -317,7 +329,7 @@ CloudColumns FindColumns(const RingCloud& cloud) {
   if (!is_grid) {
     for (std::size_t i = 0; i < cloud.points.size(); ++i) guess_rad[Index(columns.column_of_point[i])] = cloud.points[i].azimuth_rad;
   }
-  azimuths.Fit(guess_rad, [&](const RingPoint& point, double known_rad) { return turn(point.azimuth_rad, known_rad); });
+  azimuths.Fit(guess_rad, kAgreeRad, [&](const RingPoint& point, double known_rad) { return turn(point.azimuth_rad, known_rad); });
   FillBetween(guess_rad, azimuths, StepOf(guess_rad, azimuths, turn), turn);
   for (auto& azimuth_rad : guess_rad) azimuth_rad = WrapTo2Pi(azimuth_rad);
   columns.azimuth_rad = std::move(guess_rad);
@@ -329,7 +341,7 @@ CloudColumns FindColumns(const RingCloud& cloud) {
   if (!cloud.has_times) return columns;
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
     columns.time_ns[Index(columns.column_of_point[i])] = static_cast<double>(cloud.points[i].time_ns);
-  times.Fit(columns.time_ns, [](const RingPoint& point, double known_ns) { return static_cast<double>(point.time_ns) - known_ns; });
+  times.Fit(columns.time_ns, kAgreeNs, [](const RingPoint& point, double known_ns) { return static_cast<double>(point.time_ns) - known_ns; });
   FillBetween(columns.time_ns, times, StepOf(columns.time_ns, times, minus), minus);
   double least_ns = INFINITY;
   for (std::size_t ring = 0; ring < times.of_ring().size(); ++ring) {

@@ -117,7 +117,7 @@ bool RosBag::NextRecord() {
   switch (record->op) {
     case kBagChunk:
       chunk_offset_ = position_;
-      if (TakeChunk(*record)) position_ = end;
+      if (TakeChunk(*record)) position_ = std::min(end, source_->size());
       return true;
     case kBagMessage:
     case kBagConnection: {
@@ -145,7 +145,7 @@ bool RosBag::NextRecord() {
       return true;
   }
   if (end > source_->size()) losses_.is_cut = true;
-  position_ = end;
+  position_ = std::min(end, source_->size());
   return true;
 }
 
