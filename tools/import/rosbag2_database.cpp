@@ -109,7 +109,7 @@ void Rosbag2Database::ReadTopics() {
   }
   first_id_ = NumberOf(database_, "SELECT min(id) FROM messages");
   greatest_id_ = NumberOf(database_, "SELECT max(id) FROM messages");
-  if (!Select(std::numeric_limits<std::int64_t>::min())) is_at_end_ = true;
+  if (!Select(last_id_)) is_at_end_ = true;
 }
 
 bool Rosbag2Database::Select(std::int64_t after_id) {
@@ -128,7 +128,9 @@ double Rosbag2Database::share() const {
 std::optional<RecordedMessage> Rosbag2Database::Next() {
   while (!is_at_end_) {
     const int code = sqlite3_step(statement_);
-    if (code == SQLITE_ROW) {
+    // The pages of a damaged tree may come again and again.
+    const bool is_damaged = code == SQLITE_ROW && sqlite3_column_int64(statement_, 0) <= last_id_;
+    if (code == SQLITE_ROW && !is_damaged) {
       last_id_ = sqlite3_column_int64(statement_, 0);
       if (auto message = ToMessage()) return message;
     } else if (code == SQLITE_DONE || !SkipDamage()) {
@@ -140,7 +142,8 @@ std::optional<RecordedMessage> Rosbag2Database::Next() {
 
 // Behind a damaged page: the next number from which on rows come again, looked for in steps that double.
 bool Rosbag2Database::SkipDamage() {
-  losses_.Damage(0, std::string("database: ") + sqlite3_errmsg(database_) + " behind message " + std::to_string(last_id_));
+  const bool is_first = last_id_ == std::numeric_limits<std::int64_t>::min();
+  losses_.Damage(0, "database: damaged " + (is_first ? "before the first message" : "behind message " + std::to_string(last_id_)));
   constexpr int kMaxTries = 40;
   const auto from = last_id_;
   const auto num_left = static_cast<std::uint64_t>(greatest_id_) - static_cast<std::uint64_t>(from);
@@ -149,7 +152,7 @@ bool Rosbag2Database::SkipDamage() {
     if (!Select(from + step)) return false;
     const int code = sqlite3_step(statement_);
     if (code == SQLITE_DONE) return false;
-    if (code != SQLITE_ROW) continue;
+    if (code != SQLITE_ROW || sqlite3_column_int64(statement_, 0) <= from + step) continue;
     last_id_ = from + step;
     return Select(last_id_);  // the row that came is read again
   }

@@ -1,6 +1,7 @@
 // Recordings of rosbag2 in its SQLite storage: *.db3.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,7 +45,7 @@ class Rosbag2Database final : public Recording {
   sqlite3_stmt* statement_ = nullptr;
   Topics topics_;
   Losses losses_;
-  std::int64_t last_id_ = 0;
+  std::int64_t last_id_ = std::numeric_limits<std::int64_t>::min();  // of what was read; numbers grow
   std::int64_t first_id_ = 0;
   std::int64_t greatest_id_ = 0;
   std::vector<std::uint8_t> unpacked_;
