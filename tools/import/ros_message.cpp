@@ -158,7 +158,8 @@ std::optional<RosNavSatFix> ParseNavSatFix(Encoding encoding, Bytes bytes) {
   RosReader reader(encoding, bytes);
   RosNavSatFix fix;
   fix.header = reader.Header();
-  fix.status = std::bit_cast<std::int8_t>(reader.U8());
+  const int status = reader.U8();
+  fix.status = status < 0x80 ? status : status - 0x100;
   reader.U16();  // service
   fix.latitude_deg = reader.F64();
   fix.longitude_deg = reader.F64();

@@ -1,5 +1,7 @@
 #include "tools/import/topic_map.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -151,7 +153,7 @@ TopicMap ParseTopicMap(const std::string& text, const std::string& name, const T
     std::string topic;
     std::string word;
     if (!(words >> topic)) continue;
-    const auto fault = [&](const std::string& reason) { faults.Add(name + ":" + std::to_string(number) + ": " + reason); };
+    const auto fault = [&](const std::string& reason) { faults.Add(fmt::format("{}:{}: {}", name, number, reason)); };
     const auto found = by_name.find(topic);
     if (found == by_name.end()) {
       fault("the recording has no topic " + topic);
@@ -160,10 +162,10 @@ TopicMap ParseTopicMap(const std::string& text, const std::string& name, const T
     words >> word;
     const auto row = std::ranges::find(kUseRows, std::string_view(word), &UseRow::word);
     if (row == kUseRows.end()) {
-      fault("'" + word + "' is no use of a topic: " + UseWords());
+      fault(fmt::format("'{}' is no use of a topic: {}", word, UseWords()));
       continue;
     }
-    if (!Fits(*row, found->second)) fault(topic + " is of type " + found->second.type + ", which cannot be " + word);
+    if (!Fits(*row, found->second)) fault(fmt::format("{} is of type {}, which cannot be {}", topic, found->second.type, word));
     TopicUse use{row->use, TimeBasis::kAuto};
     while (words >> word) {
       constexpr std::array<std::pair<std::string_view, TimeBasis>, 3> kTimes{
@@ -186,7 +188,7 @@ TopicMap ParseTopicMap(const std::string& text, const std::string& name, const T
 
 std::string UseWords() {
   std::string words;
-  for (const auto& row : kUseRows) words += (words.empty() ? "" : ", ") + std::string(row.word);
+  for (const auto& row : kUseRows) words.append(words.empty() ? "" : ", ").append(row.word);
   return words;
 }
 
