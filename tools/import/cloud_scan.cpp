@@ -11,7 +11,6 @@
 #include "common/core/elementary.hpp"
 #include "common/core/utime.hpp"
 #include "common/messages/checks.hpp"
-#include "tools/import/cloud_columns.hpp"
 
 namespace lookout::importer {
 
@@ -23,6 +22,7 @@ constexpr double kMaxCloudCount = std::numeric_limits<std::uint16_t>::max();
 // Of the points of a ring about its cone, as a part of their distance: more is no ring (0.6 degrees).
 constexpr double kMaxRingScatter = 0.01;
 constexpr double kMaxOriginM = 0.3;
+constexpr double kLongestScanNs = 2e9;
 
 // Splits a scan into messages that fit.
 std::vector<lidar_scan_t> SplitScan(const lidar_scan_t& scan) {
@@ -62,7 +62,8 @@ double RangeUnitFor(double farthest_m) { return kCloudRangeUnitM * std::max(1.0,
 }  // namespace
 
 void CloudScans::Learn(const RosPointCloud& cloud) {
-  auto points = ToRingCloud(cloud, last_refusal_);
+  std::string why;
+  auto points = ToRingCloud(cloud, why);
   if (!points) return;
   ++num_learned_;
   if (has_rings_ && !points->has_rings) has_rings_ = false;
@@ -144,78 +145,47 @@ std::vector<CloudScans::Beam> CloudScans::Beams() const {
   return beams;
 }
 
-std::vector<lidar_scan_t> CloudScans::Convert(const RosPointCloud& cloud, std::int64_t stamp_ns, const std::string& model) {
-  if (num_learned_ == 0) Learn(cloud);
-  auto points = ToRingCloud(cloud, last_refusal_);
-  if (!points) {
-    ++counts_.num_refused;
-    return {};
-  }
-  has_times_ = has_times_ && points->has_times;
-  has_reflectivity_ = has_reflectivity_ && points->has_reflectivity;
-  is_clock_other_ = is_clock_other_ || points->is_clock_other;
-  counts_.num_points += std::ssize(points->points) + points->num_empty + points->num_out_of_range;
-  counts_.num_empty += points->num_empty;
-  counts_.num_out_of_range += points->num_out_of_range;
-  MendRings(*points);
-  auto beams = Beams();
-  std::array<std::int32_t, kMaxImportRings> place_of_ring{};
-  const auto number_beams = [&] {
-    place_of_ring.fill(-1);
-    for (std::size_t i = 0; i < beams.size(); ++i) place_of_ring[static_cast<std::size_t>(beams[i].ring)] = static_cast<std::int32_t>(i);
-  };
-  number_beams();
-  // A ring that was not seen before.
+// Points of rings that are known, as places in `beams`; a ring that was not seen before is learned from this cloud.
+std::vector<CloudScans::Beam> CloudScans::SortIntoBeams(RingCloud& cloud) {
   RingCloud unknown;
-  for (const auto& point : points->points) {
-    if (point.ring >= 0 && place_of_ring[static_cast<std::size_t>(point.ring)] < 0) unknown.points.push_back(point);
+  auto beams = Beams();
+  auto places = PlacesOf(beams);
+  for (const auto& point : cloud.points) {
+    if (point.ring >= 0 && places[static_cast<std::size_t>(point.ring)] < 0) unknown.points.push_back(point);
   }
   if (!unknown.points.empty()) {
     Add(unknown);
     beams = Beams();
-    number_beams();
+    places = PlacesOf(beams);
   }
-  counts_.num_no_ring += std::erase_if(
-      points->points, [&](const RingPoint& point) { return point.ring < 0 || place_of_ring[static_cast<std::size_t>(point.ring)] < 0; });
+  counts_.num_no_ring +=
+      std::erase_if(cloud.points, [&](const RingPoint& point) { return point.ring < 0 || places[static_cast<std::size_t>(point.ring)] < 0; });
+  return beams;
+}
 
-  const auto columns = FindColumns(*points);
-  const auto num_columns = std::ssize(columns.azimuth_rad);
-  const auto num_cells = num_columns * std::ssize(beams);
-  if (num_columns > messages::kMaxScanColumns || num_cells > messages::kMaxScanCells || (num_columns == 0 && !points->points.empty())) {
-    last_refusal_ = "has more columns than a turn of a lidar";
-    ++counts_.num_refused;
-    return {};
-  }
-  if (beams.empty()) {
-    last_refusal_ = "has too few points to know any ring";
-    ++counts_.num_refused;
-    return {};
-  }
+std::array<std::int32_t, kMaxImportRings> CloudScans::PlacesOf(const std::vector<Beam>& beams) {
+  std::array<std::int32_t, kMaxImportRings> places{};
+  places.fill(-1);
+  for (std::size_t i = 0; i < beams.size(); ++i) places[static_cast<std::size_t>(beams[i].ring)] = static_cast<std::int32_t>(i);
+  return places;
+}
 
+// The scan without its cells.
+lidar_scan_t CloudScans::HeadOf(const std::vector<Beam>& beams, const CloudColumns& columns, std::int64_t stamp_ns) {
   lidar_scan_t scan{};
-  scan.seq = next_seq_;
-  scan.model = model;
   scan.time_source = lidar_scan_t::TIME_HOST;
-  const double begin_ns = num_columns == 0 ? 0.0 : *std::ranges::min_element(columns.time_ns);
+  const bool has_columns = !columns.azimuth_rad.empty();
+  const double begin_ns = has_columns ? *std::ranges::min_element(columns.time_ns) : 0.0;
   const auto base_ns = stamp_ns + static_cast<std::int64_t>(std::floor(begin_ns));
   scan.utime_us = base_ns >= 0 ? base_ns / 1000 : (base_ns - 999) / 1000;
-  const double base_of_cloud_ns = static_cast<double>(scan.utime_us * 1000 - stamp_ns);
-  double farthest_m = 0.0;
-  std::vector<double> ranges_m;
-  ranges_m.reserve(points->points.size());
-  for (const auto& point : points->points) {
-    const auto& beam = beams[static_cast<std::size_t>(place_of_ring[static_cast<std::size_t>(point.ring)])];
-    ranges_m.push_back(Hypot(point.level_m, point.z_m - beam.origin_height_m));
-    farthest_m = std::max(farthest_m, ranges_m.back());
-  }
-  scan.range_unit_m = RangeUnitFor(farthest_m);
+  const auto base_of_cloud_ns = static_cast<double>(scan.utime_us * 1000 - stamp_ns);
   double longest_offset_ns = 0.0;
   for (const auto& beam : beams) {
     const auto ring = static_cast<std::size_t>(beam.ring);
-    const double offset_ns = num_columns == 0 ? 0.0 : columns.time_offset_ns[ring];
+    const double offset_ns = has_columns ? columns.time_offset_ns[ring] : 0.0;
     longest_offset_ns = std::max(longest_offset_ns, offset_ns);
     scan.elevation_rad.push_back(static_cast<float>(beam.elevation_rad));
-    scan.azimuth_offset_rad.push_back(num_columns == 0 ? 0.0F : static_cast<float>(columns.azimuth_offset_rad[ring]));
+    scan.azimuth_offset_rad.push_back(has_columns ? static_cast<float>(columns.azimuth_offset_rad[ring]) : 0.0F);
     scan.time_offset_ns.push_back(static_cast<std::int32_t>(std::llround(offset_ns)));
     scan.origin_height_m.push_back(static_cast<float>(beam.origin_height_m));
   }
@@ -226,17 +196,32 @@ std::vector<lidar_scan_t> CloudScans::Convert(const RosPointCloud& cloud, std::i
   for (std::size_t column = 0; column < columns.azimuth_rad.size(); ++column) {
     // 2 pi as a float is more than 2 pi.
     scan.azimuth_rad.push_back(std::min(static_cast<float>(columns.azimuth_rad[column]), std::nextafter(static_cast<float>(kTwoPi), 0.0F)));
-    scan.time_ns.push_back(static_cast<std::int32_t>(std::llround(std::clamp(columns.time_ns[column] - base_of_cloud_ns, 0.0, 2e9))));
+    scan.time_ns.push_back(static_cast<std::int32_t>(std::llround(std::clamp(columns.time_ns[column] - base_of_cloud_ns, 0.0, kLongestScanNs))));
     last_ns = std::max(last_ns, scan.time_ns.back());
   }
   scan.num_turn_columns = messages::CountOf(scan.azimuth_rad);
   scan.end_utime_us = scan.utime_us + (last_ns + static_cast<std::int64_t>(std::ceil(longest_offset_ns)) + 999) / 1000;
-  scan.range.assign(static_cast<std::size_t>(num_cells), 0);
-  scan.reflectivity.assign(static_cast<std::size_t>(num_cells), 0);
-  for (std::size_t i = 0; i < points->points.size(); ++i) {
-    const auto& point = points->points[i];
-    const auto cell = static_cast<std::size_t>(columns.column_of_point[i]) * beams.size() +
-                      static_cast<std::size_t>(place_of_ring[static_cast<std::size_t>(point.ring)]);
+  return scan;
+}
+
+// The nearest return of each cell.
+void CloudScans::FillCells(const RingCloud& cloud, const std::vector<Beam>& beams, const CloudColumns& columns, lidar_scan_t& scan) {
+  const auto places = PlacesOf(beams);
+  const auto place_of = [&](const RingPoint& point) { return static_cast<std::size_t>(places[static_cast<std::size_t>(point.ring)]); };
+  double farthest_m = 0.0;
+  std::vector<double> ranges_m;
+  ranges_m.reserve(cloud.points.size());
+  for (const auto& point : cloud.points) {
+    ranges_m.push_back(Hypot(point.level_m, point.z_m - beams[place_of(point)].origin_height_m));
+    farthest_m = std::max(farthest_m, ranges_m.back());
+  }
+  scan.range_unit_m = RangeUnitFor(farthest_m);
+  const auto num_cells = columns.azimuth_rad.size() * beams.size();
+  scan.range.assign(num_cells, 0);
+  scan.reflectivity.assign(num_cells, 0);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const auto& point = cloud.points[i];
+    const auto cell = static_cast<std::size_t>(columns.column_of_point[i]) * beams.size() + place_of(point);
     const auto count = static_cast<std::uint16_t>(std::clamp(std::round(ranges_m[i] / scan.range_unit_m), 1.0, kMaxCloudCount));
     const auto before = std::bit_cast<std::uint16_t>(scan.range[cell]);
     if (before != 0) ++counts_.num_hidden;
@@ -244,12 +229,41 @@ std::vector<lidar_scan_t> CloudScans::Convert(const RosPointCloud& cloud, std::i
     scan.range[cell] = std::bit_cast<std::int16_t>(count);
     scan.reflectivity[cell] = point.reflectivity;
   }
+}
+
+std::vector<lidar_scan_t> CloudScans::Refuse(std::string reason) {
+  last_refusal_ = std::move(reason);
+  ++counts_.num_refused;
+  return {};
+}
+
+std::vector<lidar_scan_t> CloudScans::Convert(const RosPointCloud& cloud, std::int64_t stamp_ns, const std::string& model) {
+  if (num_learned_ == 0) Learn(cloud);
+  std::string why;
+  auto points = ToRingCloud(cloud, why);
+  if (!points) return Refuse(why);
+  has_times_ = has_times_ && points->has_times;
+  has_reflectivity_ = has_reflectivity_ && points->has_reflectivity;
+  is_clock_other_ = is_clock_other_ || points->is_clock_other;
+  counts_.num_points += std::ssize(points->points) + points->num_empty + points->num_out_of_range;
+  counts_.num_empty += points->num_empty;
+  counts_.num_out_of_range += points->num_out_of_range;
+  MendRings(*points);
+  const auto beams = SortIntoBeams(*points);
+  if (beams.empty()) return Refuse("has too few points to know any ring");
+  const auto columns = FindColumns(*points);
+  const auto num_columns = std::ssize(columns.azimuth_rad);
+  const bool is_lost = num_columns == 0 && !points->points.empty();
+  if (is_lost || num_columns > messages::kMaxScanColumns || num_columns * std::ssize(beams) > messages::kMaxScanCells) {
+    return Refuse("has more columns than a turn of a lidar");
+  }
+  auto scan = HeadOf(beams, columns, stamp_ns);
+  scan.seq = next_seq_;
+  scan.model = model;
+  FillCells(*points, beams, columns, scan);
   auto parts = SplitScan(scan);
   for (const auto& part : parts) {
-    if (!messages::FaultOf(part, bus::kMaxMessageBytes)) continue;
-    last_refusal_ = "gives no scan: " + std::string(*messages::FaultOf(part, bus::kMaxMessageBytes));
-    ++counts_.num_refused;
-    return {};
+    if (const auto fault = messages::FaultOf(part, bus::kMaxMessageBytes)) return Refuse("gives no scan: " + std::string(*fault));
   }
   ++next_seq_;
   return parts;

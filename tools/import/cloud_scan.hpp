@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lookout/lidar_scan_t.hpp"
+#include "tools/import/cloud_columns.hpp"
 #include "tools/import/cloud_points.hpp"
 
 namespace lookout::importer {
@@ -57,6 +58,11 @@ class CloudScans {
   void MendRings(RingCloud& cloud) const;
   std::vector<Beam> Beams() const;
   void LearnBands(const RingCloud& cloud);
+  std::vector<Beam> SortIntoBeams(RingCloud& cloud);
+  static std::array<std::int32_t, kMaxImportRings> PlacesOf(const std::vector<Beam>& beams);
+  static lidar_scan_t HeadOf(const std::vector<Beam>& beams, const CloudColumns& columns, std::int64_t stamp_ns);
+  void FillCells(const RingCloud& cloud, const std::vector<Beam>& beams, const CloudColumns& columns, lidar_scan_t& scan);
+  std::vector<lidar_scan_t> Refuse(std::string reason);
 
   std::array<RingSums, kMaxImportRings> sums_{};
   std::optional<std::array<double, 2>> bands_rad_;  // of a sensor without rings: lowest and highest elevation
