@@ -52,9 +52,16 @@ std::unique_ptr<Recording> OpenRecording(const std::filesystem::path& file) {
 std::vector<std::filesystem::path> FilesOfRecording(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) return {path};
   std::vector<std::filesystem::path> files;
+  bool has_packed = false;
   for (const auto& entry : std::filesystem::directory_iterator(path)) {
     const auto extension = entry.path().extension();
     if (extension == ".db3" || extension == ".mcap") files.push_back(entry.path());
+    has_packed = has_packed || extension == ".zstd";
+  }
+  // compression_mode: file
+  if (files.empty() && has_packed) {
+    throw std::runtime_error(PrintableLines(path.string()) +
+                             ": is a folder with files that are packed as a whole; unpack them first: zstd -d *.zstd");
   }
   if (files.empty()) throw std::runtime_error(PrintableLines(path.string()) + ": is a folder without a recording of rosbag2 (*.db3, *.mcap)");
   std::ranges::sort(files, {}, [](const auto& file) { return std::pair(NumberOfFile(file), file.string()); });

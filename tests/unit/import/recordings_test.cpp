@@ -278,6 +278,42 @@ TEST(Recordings, SpoiledAtAnyPlaceGiveNothingThatIsNoMessage) {
   }
 }
 
+TEST(Recordings, OfAFolderThatArePackedAreNamedWithTheCommandThatHelps) {
+  const support::TempDir folder;
+  support::WriteFile(folder / "day_0.db3.zstd", "x");
+  try {
+    FilesOfRecording(folder.path());
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("zstd -d"), std::string::npos);
+  }
+}
+
+TEST(McapFile, GivesMessagesOutsideOfChunks) {
+  const auto made = SomeMessages(Encoding::kCdr);
+  Writer file;
+  file.Raw(kMcapFileMagic).Raw(McapRecord(1, Payload(8)));
+  file.Raw(McapRecord(3, Writer()
+                             .Number(std::uint16_t{1})
+                             .Sized(std::string_view("nmea_msgs/msg/Sentence"))
+                             .Sized(std::string_view("ros2msg"))
+                             .Sized(std::string_view())
+                             .bytes));
+  file.Raw(McapRecord(4, Writer()
+                             .Number(std::uint16_t{0})
+                             .Number(std::uint16_t{1})
+                             .Sized(std::string_view("/nmea"))
+                             .Sized(std::string_view("cdr"))
+                             .Number(std::uint32_t{0})
+                             .bytes));
+  const auto time_ns = static_cast<std::uint64_t>(made[0].time_ns);
+  file.Raw(McapRecord(5, Writer().Number(std::uint16_t{0}).Number(std::uint32_t{0}).Number(time_ns).Number(time_ns).Raw(made[0].bytes).bytes));
+  // Cut off: no end of data, no footer.
+  const auto read = ReadAll(*OpenMcap(file.bytes));
+  ExpectEqual(read.messages, {made[0]});
+  EXPECT_TRUE(read.losses.is_cut);
+}
+
 TEST(Recordings, OfAFolderAreInTheOrderOfTheirNumbers) {
   const support::TempDir folder;
   for (const char* name : {"day_10.db3", "day_9.db3", "day_0.db3", "metadata.yaml"}) support::WriteFile(folder / name, "x");
