@@ -192,6 +192,31 @@ void ByAzimuth(const RingCloud& cloud, CloudColumns& columns) {
   }
 }
 
+// Points whose cell is another's already.
+std::int64_t NumCollisions(const RingCloud& cloud, const CloudColumns& columns) {
+  std::vector<bool> is_taken(columns.azimuth_rad.size() * kMaxImportRings);
+  std::int64_t num_collisions = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const auto cell = Index(columns.column_of_point[i]) * kMaxImportRings + Index(cloud.points[i].ring);
+    num_collisions += is_taken[cell] ? 1 : 0;
+    is_taken[cell] = true;
+  }
+  return num_collisions;
+}
+
+// By the times of the shots, unless these say less than the azimuths do: times that begin anew with each packet, or are those of packets.
+CloudColumns ByTimeOrAzimuth(const RingCloud& cloud) {
+  constexpr std::int64_t kPartThatMayCollide = 100;
+  CloudColumns by_time;
+  const bool is_timed = ByTime(cloud, by_time);
+  const auto num_timed = is_timed ? NumCollisions(cloud, by_time) : 0;
+  if (is_timed && num_timed <= std::ssize(cloud.points) / kPartThatMayCollide) return by_time;
+  CloudColumns by_azimuth;
+  ByAzimuth(cloud, by_azimuth);
+  // Second returns collide in both.
+  return is_timed && num_timed <= NumCollisions(cloud, by_azimuth) ? by_time : by_azimuth;
+}
+
 // Means of what points say of columns and of rings, in turns, until they agree: value = column + ring.
 class TwoWayMeans {
  public:
@@ -310,9 +335,8 @@ CloudColumns FindColumns(const RingCloud& cloud) {
     ByPlace(cloud, &RingPoint::column, cloud.width, columns);
   } else if (cloud.height > 1 && cloud.height <= kMaxImportColumns && IsRingPerLine(cloud, &RingPoint::column, cloud.width)) {
     ByPlace(cloud, &RingPoint::row, cloud.height, columns);
-  } else if (!ByTime(cloud, columns)) {
-    columns.column_of_point.clear();
-    ByAzimuth(cloud, columns);
+  } else {
+    columns = ByTimeOrAzimuth(cloud);
   }
 
   constexpr double kAgreeRad = 1e-8;
