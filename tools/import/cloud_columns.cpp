@@ -126,6 +126,26 @@ std::optional<PerRing<double>> FiringOffsetsNs(const RingCloud& cloud, double pe
   return offsets_ns;
 }
 
+// Groups of places on a line that lie within half a period, in columns a period apart. @return false where these are too many
+bool GroupFirings(std::vector<std::pair<double, std::size_t>>& place_of_point, double period, CloudColumns& columns) {
+  std::ranges::sort(place_of_point);
+  columns.column_of_point.assign(place_of_point.size(), CloudColumns::kNoColumn);
+  std::int32_t column = 0;
+  double begin = place_of_point.front().first;
+  for (const auto& [place, point] : place_of_point) {
+    const double passed = (place - begin) / period;
+    if (passed > 0.5) {
+      if (passed > kMaxImportColumns) return false;
+      column += std::max(1, static_cast<std::int32_t>(std::lround(passed)));
+      begin = place;
+    }
+    if (column >= kMaxImportColumns) return false;
+    columns.column_of_point[point] = column;
+  }
+  columns.azimuth_rad.assign(Index(column) + 1, 0.0);
+  return true;
+}
+
 bool ByTime(const RingCloud& cloud, CloudColumns& columns) {
   if (!cloud.has_times) return false;
   const auto period_ns = FiringPeriodNs(cloud);
@@ -136,21 +156,7 @@ bool ByTime(const RingCloud& cloud, CloudColumns& columns) {
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     firing_of_point.emplace_back(static_cast<double>(cloud.points[i].time_ns) - (*offsets_ns)[Index(cloud.points[i].ring)], i);
   }
-  std::ranges::sort(firing_of_point);
-  columns.column_of_point.assign(cloud.points.size(), CloudColumns::kNoColumn);
-  std::int32_t column = 0;
-  double begin_ns = firing_of_point.front().first;
-  for (const auto& [firing_ns, point] : firing_of_point) {
-    const double passed = (firing_ns - begin_ns) / *period_ns;
-    if (passed > 0.5) {
-      if (passed > kMaxImportColumns) return false;
-      column += std::max(1, static_cast<std::int32_t>(std::lround(passed)));
-      begin_ns = firing_ns;
-    }
-    if (column >= kMaxImportColumns) return false;
-    columns.column_of_point[point] = column;
-  }
-  columns.azimuth_rad.assign(Index(column) + 1, 0.0);
+  if (!GroupFirings(firing_of_point, *period_ns, columns)) return false;
   columns.is_by_time = true;
   return true;
 }
@@ -178,6 +184,7 @@ double ColumnStepRad(const RingCloud& cloud) {
 }
 
 void ByAzimuth(const RingCloud& cloud, CloudColumns& columns) {
+  columns.is_grid = true;
   const double step_rad = ColumnStepRad(cloud);
   const auto num_columns = static_cast<std::int32_t>(std::lround(kTwoPi / std::abs(step_rad)));
   const auto& first = *std::ranges::min_element(cloud.points, {}, &RingPoint::time_ns);
@@ -190,6 +197,65 @@ void ByAzimuth(const RingCloud& cloud, CloudColumns& columns) {
   for (std::int32_t column = 0; column < num_columns; ++column) {
     columns.azimuth_rad.push_back(WrapTo2Pi(first.azimuth_rad + sign * width_rad * column));
   }
+}
+
+// The same as by time, with the azimuth as the clock: it turns unevenly, but a ring is always as far from another in azimuth, but for whole steps.
+// nullopt where the rings keep no phase, as bands do that stand for rings.
+std::optional<PerRing<double>> FiringOffsetsRad(const RingCloud& cloud, const std::vector<double>& turned_rad, double step_rad) {
+  PerRing<std::int64_t> num_of_ring{};
+  for (const auto& point : cloud.points) ++num_of_ring[Index(point.ring)];
+  const auto reference = static_cast<std::int32_t>(std::ranges::max_element(num_of_ring) - num_of_ring.begin());
+  std::vector<double> reference_rad;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (cloud.points[i].ring == reference) reference_rad.push_back(turned_rad[i]);
+  }
+  std::ranges::sort(reference_rad);
+  constexpr double kNearSteps = 2.0;
+  PerRing<std::array<double, 3>> sums{};
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const auto next = std::ranges::lower_bound(reference_rad, turned_rad[i]);
+    const bool has_before = next != reference_rad.begin() && (next == reference_rad.end() || turned_rad[i] - *(next - 1) < *next - turned_rad[i]);
+    const double steps = (turned_rad[i] - (has_before ? *(next - 1) : *next)) / step_rad;
+    if (std::abs(steps) > kNearSteps) continue;
+    const auto phase = SinCosOf(kTwoPi * steps);
+    auto& sum = sums[Index(cloud.points[i].ring)];
+    sum[0] += phase.cos;
+    sum[1] += phase.sin;
+    sum[2] += 1.0;
+  }
+  constexpr double kLeastTogether = 0.5;
+  PerRing<double> offsets_rad{};
+  std::int64_t num_together = 0;
+  for (std::size_t ring = 0; ring < sums.size(); ++ring) {
+    const auto& [cosine, sine, num] = sums[ring];
+    if (num == 0.0 || Hypot(cosine, sine) < kLeastTogether * num) continue;
+    offsets_rad[ring] = Atan2(sine, cosine) / kTwoPi * step_rad;
+    num_together += num_of_ring[ring];
+  }
+  if (10 * num_together < 9 * std::ssize(cloud.points)) return std::nullopt;
+  return offsets_rad;
+}
+
+bool ByAzimuthOfFirings(const RingCloud& cloud, CloudColumns& columns) {
+  const double signed_step_rad = ColumnStepRad(cloud);
+  const double step_rad = std::abs(signed_step_rad);
+  const auto& first = *std::ranges::min_element(cloud.points, {}, &RingPoint::time_ns);
+  std::vector<double> turned_rad;
+  turned_rad.reserve(cloud.points.size());
+  for (const auto& point : cloud.points) {
+    turned_rad.push_back(WrapTo2Pi((signed_step_rad < 0.0 ? -1.0 : 1.0) * (point.azimuth_rad - first.azimuth_rad)));
+  }
+  const auto offsets_rad = FiringOffsetsRad(cloud, turned_rad, step_rad);
+  if (!offsets_rad) return false;
+  const double first_rad = (*offsets_rad)[Index(first.ring)];
+  std::vector<std::pair<double, std::size_t>> firing_of_point;
+  firing_of_point.reserve(cloud.points.size());
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    // Half a step, so that the first firing is not torn in two.
+    const double firing_rad = turned_rad[i] - (*offsets_rad)[Index(cloud.points[i].ring)] + first_rad + 0.5 * step_rad;
+    firing_of_point.emplace_back(WrapTo2Pi(firing_rad), i);
+  }
+  return GroupFirings(firing_of_point, step_rad, columns);
 }
 
 // Points whose cell is another's already.
@@ -211,10 +277,16 @@ CloudColumns ByTimeOrAzimuth(const RingCloud& cloud) {
   const bool is_timed = ByTime(cloud, by_time);
   const auto num_timed = is_timed ? NumCollisions(cloud, by_time) : 0;
   if (is_timed && num_timed <= std::ssize(cloud.points) / kPartThatMayCollide) return by_time;
-  CloudColumns by_azimuth;
-  ByAzimuth(cloud, by_azimuth);
-  // Second returns collide in both.
-  return is_timed && num_timed <= NumCollisions(cloud, by_azimuth) ? by_time : by_azimuth;
+  // Second returns collide in all.
+  CloudColumns best;
+  ByAzimuth(cloud, best);
+  auto num_best = NumCollisions(cloud, best);
+  CloudColumns firings;
+  if (ByAzimuthOfFirings(cloud, firings) && NumCollisions(cloud, firings) <= num_best) {
+    num_best = NumCollisions(cloud, firings);
+    best = std::move(firings);
+  }
+  return is_timed && num_timed <= num_best ? by_time : best;
 }
 
 // Means of what points say of columns and of rings, in turns, until they agree: value = column + ring.
@@ -347,7 +419,7 @@ CloudColumns FindColumns(const RingCloud& cloud) {
     return angle_rad >= -kPi && angle_rad < kPi ? angle_rad : WrapToPi(angle_rad);
   };
   const auto minus = [](double to, double from) { return to - from; };
-  const bool is_grid = !columns.is_by_place && !columns.is_by_time;
+  const bool is_grid = columns.is_grid;
   TwoWayMeans azimuths(cloud, columns);
   auto guess_rad = columns.azimuth_rad;
   if (!is_grid) {

@@ -17,14 +17,16 @@ struct CloudColumns {
   std::vector<double> azimuth_offset_rad;     // [rings of the sensor, by number] to be added to that of the column
   std::vector<double> time_offset_ns;         // [rings] the same; the least is 0
   bool is_by_place = false;                   // the cloud was organised
-  bool is_by_time = false;                    // by the times of the shots; else by azimuth on an even grid
+  bool is_by_time = false;                    // by the times of the shots
+  bool is_grid = false;                       // of azimuth, even; where none of these, by the azimuths of the shots
 };
 
 /// Columns at most: more is no turn of a lidar.
 inline constexpr std::int32_t kMaxImportColumns = 16'384;
 
 /// Columns are, of what is possible the first: the columns (or rows) of an organised cloud; the firings, by the times of the points, where their
-/// period shows; an even grid of azimuth, as wide as the commonest step. Columns without points lie evenly between their neighbours.
+/// period shows; the firings, by the azimuths of the points, where each ring keeps its phase; an even grid of azimuth, as wide as the commonest step.
+/// Columns without points lie evenly between their neighbours.
 ///
 /// @return without columns where the cloud has no points, or more than kMaxImportColumns
 CloudColumns FindColumns(const RingCloud& cloud);

@@ -176,7 +176,7 @@ lidar_scan_t CloudScans::HeadOf(const std::vector<Beam>& beams, const CloudColum
   scan.time_source = lidar_scan_t::TIME_HOST;
   const bool has_columns = !columns.azimuth_rad.empty();
   const double begin_ns = has_columns ? *std::ranges::min_element(columns.time_ns) : 0.0;
-  const auto base_ns = stamp_ns + static_cast<std::int64_t>(std::floor(begin_ns));
+  const auto base_ns = stamp_ns + std::llround(begin_ns);
   scan.utime_us = base_ns >= 0 ? base_ns / 1000 : (base_ns - 999) / 1000;
   const auto base_of_cloud_ns = static_cast<double>(scan.utime_us * 1000 - stamp_ns);
   double longest_offset_ns = 0.0;
