@@ -15,6 +15,10 @@ install(CODE "
   file(INSTALL \${archives} DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${data_folder}\")
 ")
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/lcmtypes DESTINATION ${data_folder} FILES_MATCHING PATTERN "*.lcm" PATTERN "java" EXCLUDE)
+# The Python package, with the types that it reads.
+set(python_folder lib/python3/dist-packages/lookout)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/python/lookout/ DESTINATION ${python_folder} FILES_MATCHING PATTERN "*.py")
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/lcmtypes DESTINATION ${python_folder} FILES_MATCHING PATTERN "*.lcm" PATTERN "java" EXCLUDE)
 # Boats to copy, and scenes for lookout-sim; what is in /etc is the boat's own.
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/config/demo ${CMAKE_SOURCE_DIR}/config/catabot ${CMAKE_SOURCE_DIR}/config/scenes DESTINATION ${data_folder}/config)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/config/schema DESTINATION ${data_folder}/config FILES_MATCHING PATTERN "*.proto")
@@ -25,7 +29,7 @@ install(DIRECTORY ${units_folder}/ DESTINATION lib/systemd/system)
 install(FILES systemd/sysusers.conf DESTINATION lib/sysusers.d RENAME lookout.conf)
 install(FILES systemd/sysctl.conf DESTINATION lib/sysctl.d RENAME 60-lookout.conf)
 # Every page under its own path, so that the links between them lead somewhere; config is what they show of the repository beside pages.
-foreach(folder common config deploy lcmtypes logs services tools lab cmake)
+foreach(folder common config deploy lcmtypes logs python services tools lab cmake)
   file(GLOB_RECURSE folder_pages RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.md)
   foreach(page ${folder_pages})
     get_filename_component(page_folder ${page} DIRECTORY)
@@ -73,7 +77,7 @@ set(CPACK_DEBIAN_PACKAGE_DEPENDS "iproute2, procps, systemd | systemd-standalone
 # LCM's own tools, and the rule that closes the port of the bus; a boat does without.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-bin, nftables")
 # lookout-up, where there is no systemd. Not recommended: runit's own recommendation would start a second supervisor on the boat.
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "runit, default-jre, liblcm-java, libjchart2d-java")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, runit, default-jre, liblcm-java, libjchart2d-java")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(control_folder ${CMAKE_CURRENT_BINARY_DIR}/debian)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA "${control_folder}/conffiles;${control_folder}/postinst;${control_folder}/prerm;${control_folder}/postrm")

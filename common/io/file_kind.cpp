@@ -119,8 +119,9 @@ bool MayBe(const std::filesystem::path& file, FileKind kind, Wanted wanted) {
       return IsCapture(kind) || kind == FileKind::kUnknown || (kind == FileKind::kGzip && IsCapture(PackedKindOf(file)));
     case Wanted::kTextLog:
       return IsText(kind) || kind == FileKind::kUnknown || kind == FileKind::kGzip;
-    case Wanted::kDetections:
-      return kind == FileKind::kText || kind == FileKind::kUnknown;
+    case Wanted::kImport:
+      return kind == FileKind::kText || kind == FileKind::kUnknown || kind == FileKind::kRosBag || kind == FileKind::kMcap ||
+             kind == FileKind::kSqlite;
     case Wanted::kRecording:
       return kind == FileKind::kLcmLog || kind == FileKind::kUnknown || IsCapture(kind) || IsText(kind) || kind == FileKind::kGzip;
   }
@@ -130,7 +131,7 @@ bool MayBe(const std::filesystem::path& file, FileKind kind, Wanted wanted) {
 std::string_view NotOf(Wanted wanted) {
   if (wanted == Wanted::kLog) return ", no lcm-log";
   if (wanted == Wanted::kTextLog) return ", no text log of NMEA 0183";
-  if (wanted == Wanted::kDetections) return ", no recording that is known here (lidar detections of Autoferry, scenarioN_lidar_detections.json)";
+  if (wanted == Wanted::kImport) return ", no recording of others that is known here (ROS bag, rosbag2, MCAP, detections of Autoferry)";
   return wanted == Wanted::kCapture ? ", no capture (pcap, pcapng)" : ", no capture, text log or lcm-log";
 }
 
@@ -170,9 +171,10 @@ std::string HelpOf(const std::filesystem::path& file, FileKind kind, Wanted want
       return "unpack it first: " + UnpackingOf(kind, word);
     case FileKind::kRosBag:
     case FileKind::kMcap:
-      return "no program of Lookout reads it; record the lidar's packets as a capture (tcpdump -i INTERFACE -w NEW.pcap udp)";
+      return "a log is made of it by: lookout-import --config DIR --in " + word + " --out NEW.lcmlog";
     case FileKind::kSqlite:
-      return "no log is read out of a database; a chart (MBTiles) goes to lookout-page --map";
+      return "of a ROS 2 bag a log is made by: lookout-import --config DIR --in " + word +
+             " --out NEW.lcmlog; a chart (MBTiles) goes to lookout-page --map";
     default:
       return "";
   }

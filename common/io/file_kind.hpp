@@ -49,11 +49,11 @@ std::string_view InWords(FileKind kind);
 
 /// The kind of file that a program wants to read.
 enum class Wanted {
-  kLog,         // an lcm-log
-  kCapture,     // pcap or pcapng, also packed by gzip
-  kTextLog,     // of NMEA 0183
-  kDetections,  // input of lookout-import: JSON
-  kRecording,   // any of these, or a text log
+  kLog,        // an lcm-log
+  kCapture,    // pcap or pcapng, also packed by gzip
+  kTextLog,    // of NMEA 0183
+  kImport,     // what lookout-import reads: JSON, ROS bags, rosbag2, MCAP
+  kRecording,  // any of these, or a text log
 };
 
 /// Why a file cannot be of the wanted kind, and the command that helps: "x.pcap: is a capture (pcap), no lcm-log. A log is made of it by: ..."

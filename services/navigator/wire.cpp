@@ -57,7 +57,7 @@ std::variant<Item, Refusal> ToItem(const nav_raw_t& message) {
   const bool is_sentence = message.kind == nav_raw_t::KIND_SENTENCE;
   const bool has_source = is_sentence || message.kind == nav_raw_t::KIND_IMU;
   if (is_sentence ? !IsLine(message.sentence) : !message.sentence.empty()) return kRawText;
-  if (has_source ? !IsSourceName(message.source) : !message.source.empty()) return kRawText;
+  if (has_source ? !IsSourceName(message.source) && !IsImportedSource(message.source) : !message.source.empty()) return kRawText;
   Item item{*time, message.seq, static_cast<ItemKind>(message.kind), message.source, message.sentence};
   for (const auto& sample : message.imu) {
     const auto is_plausible = [](double value) { return std::abs(value) <= kMaxImuValue; };  // not for NaN

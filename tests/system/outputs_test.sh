@@ -48,6 +48,7 @@ run() {
     svg) ${exec:-} "$bin/lookout-export" --in "$input" --table returns --format svg --out "$out" "$@" ;;
     map) ${exec:-} "$bin/lookout-export" --in "$input" --table obstacles --format geojson --out "$out" "$@" ;;
     ply) ${exec:-} "$bin/lookout-export" --in "$input" --table returns --format ply --out "$out" "$@" ;;
+    mcap) ${exec:-} "$bin/lookout-export" --in "$input" --format mcap --out "$out" "$@" ;;
     slice) ${exec:-} "$bin/lookout-log" slice --in "$input" --out "$out" "$@" ;;
     repair) ${exec:-} "$bin/lookout-log" repair "$input" "$out" "$@" ;;
   esac
@@ -66,7 +67,7 @@ expect_nothing() {
   for file in "$@"; do [ ! -e "$file" ] && [ ! -L "$file" ] || fail "$file is there"; done
 }
 
-for name in replay sim csv svg map ply slice repair; do
+for name in replay sim csv svg map ply mcap slice repair; do
   input=in.lcmlog
   seconds=2
   rm -rf out out.partial target
@@ -166,7 +167,7 @@ done
 # SIGINT half way: an input so large that the work lasts.
 cat in.lcmlog in.lcmlog in.lcmlog in.lcmlog >four
 cat four four four four four four four four >large.lcmlog
-for name in replay sim csv svg map ply slice repair; do
+for name in replay sim csv svg map ply mcap slice repair; do
   input=large.lcmlog
   seconds=3000
   for signal in INT TERM; do

@@ -13,6 +13,7 @@
 #include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/export/export.hpp"
+#include "tools/export/mcap.hpp"
 #include "tools/export/outputs.hpp"
 #include "tools/export/sinks.hpp"
 
@@ -22,12 +23,17 @@ int main(int argc, char** argv) {
   std::string scan = "last";
   std::string near;
 
-  CLI::App app("Writes what lcm-logs hold as a CSV table, a map, a PLY cloud or an SVG picture.", "lookout-export");
+  CLI::App app("Writes what lcm-logs hold as a CSV table, a map, a PLY cloud, an SVG picture or an MCAP file.", "lookout-export");
   app.add_option("--in", request.inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
   const auto names = exporter::TableNames();
-  app.add_option("--table", request.table, "what to export")->required()->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
-  app.add_option("--format", request.format, exporter::FormatsText() + ". A picture (svg) is of one scan, or of the boat's track")
-      ->check(CLI::IsMember(exporter::FormatNames()))
+  app.add_option("--table", request.table, "what to export; not with --format mcap, which is of all")
+      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
+  auto formats = exporter::FormatNames();
+  formats.emplace_back(exporter::kMcapFormat);
+  app.add_option(
+         "--format", request.format,
+         exporter::FormatsText() + "; mcap of the whole log, for Foxglove and Lichtblick. A picture (svg) is of one scan, or of the boat's track")
+      ->check(CLI::IsMember(formats))
       ->capture_default_str();
   app.add_option("--out", request.output,
                  "file to write, as FILE.partial until it is whole; one that exists is refused; without it: standard output");
@@ -51,6 +57,11 @@ int main(int argc, char** argv) {
   app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line or config.");
   try {
     app.parse(argc, argv);
+    const bool is_mcap = request.format == exporter::kMcapFormat;
+    if (!is_mcap && request.table.empty()) throw CLI::RequiredError("--table");
+    for (const char* other : {"--table", "--scan", "--from", "--to", "--near", "--config"}) {
+      if (is_mcap && app.get_option(other)->count() > 0) throw CLI::ValidationError(other, "does not go with --format mcap: it is of the whole log");
+    }
     request.all_scans = scan == "all";
     if (scan != "last" && !request.all_scans) {
       std::int64_t seq = 0;
@@ -70,5 +81,5 @@ int main(int argc, char** argv) {
   if (request.output == "") request.output = std::nullopt;
   request.progress = lookout::runtime::OnlyTerminal(stderr);
   lookout::io::CatchStopSignals();
-  return exporter::Run(request, std::cerr);
+  return request.format == exporter::kMcapFormat ? exporter::RunMcap(request, std::cerr) : exporter::Run(request, std::cerr);
 }

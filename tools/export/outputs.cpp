@@ -24,6 +24,7 @@ segmenter::Params MergingParams(const std::filesystem::path& config_folder) {
 
 std::unique_ptr<Sink> MakeCsv(const Request& request) { return MakeCsvSink(request.table, request.near); }
 std::unique_ptr<Sink> MakePly(const Request& request) { return MakePlySink(request.scan); }
+std::unique_ptr<Sink> MakePcd(const Request& request) { return MakePcdSink(request.scan); }
 template <ChosenScan::Of what>
 std::unique_ptr<Sink> MakeScanPicture(const Request& request) {
   return MakeScanSvgSink(what, request.scan);
@@ -59,6 +60,7 @@ constexpr std::string_view kNoPlace = "no pose knows its position";
 
 constexpr std::array kRows{Output{"returns", "csv", kSpanOption, MakeCsv},
                            Output{"returns", "ply", kScanOption, MakePly},
+                           Output{"returns", "pcd", kScanOption, MakePcd},
                            Output{"returns", "svg", kScanOption, MakeScanPicture<ChosenScan::Of::kReturns>},
                            Output{"segments", "csv", kSpanOption, MakeCsv},
                            Output{"obstacles", "csv", kPartOfLog, MakeCsv},
@@ -141,7 +143,7 @@ const Output* FindOutput(std::string_view table, std::string_view format) {
 }
 
 std::vector<std::string> FormatNames() {
-  std::vector<std::string> names{"csv", "ply", "svg"};
+  std::vector<std::string> names{"csv", "ply", "pcd", "svg"};
   for (const auto& row : Outputs()) {
     if (std::ranges::find(names, row.format) == names.end()) names.emplace_back(row.format);
   }

@@ -29,6 +29,9 @@ std::unique_ptr<Sink> MakeCsvSink(std::string_view table, const std::optional<Ci
 /// @param seq  of the scan; nullopt = the last whole one
 std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> seq);
 
+/// The same as a PCD file (binary) of the Point Cloud Library: x y z intensity label ring time. `label` is -1 where the log holds no SEGMENTS.
+std::unique_ptr<Sink> MakePcdSink(std::optional<std::int64_t> seq);
+
 /// One scan from above, 1320 x 1000 pixels: its returns with their segments, or its obstacles. The same text for the same log.
 std::unique_ptr<Sink> MakeScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq);
 

@@ -6,8 +6,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
@@ -19,6 +22,8 @@
 #include "common/runtime/run_info.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/import/autoferry.hpp"
+#include "tools/import/import_recording.hpp"
+#include "tools/import/topic_map.hpp"
 #include "tools/log/log_output.hpp"
 
 namespace {
@@ -27,11 +32,14 @@ using namespace lookout;
 namespace fs = std::filesystem;
 
 constexpr int kExitUsage = 2;
+constexpr int kExitDamaged = 3;
 
 struct Options {
   fs::path config_folder;
-  fs::path input;
+  std::vector<fs::path> inputs;
   fs::path output;
+  fs::path topic_map;
+  bool lists = false;
   bool force = false;
 };
 
@@ -39,20 +47,28 @@ struct Options {
 Options ParseOptions(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "Makes an lcm-log of a recording of others: lidar detections of the Autoferry data set (scenarioN_lidar_detections.json) as OBSTACLES, and "
-      "POSE "
-      "of its ferry.",
+      "Makes an lcm-log of a recording of others: ROS 1 bags, rosbag2 (SQLite, MCAP), MCAP files, and lidar detections of the Autoferry data set "
+      "(scenarioN_lidar_detections.json).",
       "lookout-import");
-  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files, for RUN_INFO")
-      ->required()
+  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files, for RUN_INFO and the lidar's ports")
       ->check(CLI::ExistingDirectory)
       ->check(lookout::config::BoatFolderFault);
-  app.add_option("--in", options.input, "recording")->required()->check(CLI::ExistingPath);
-  app.add_option("--out", options.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused")->required();
+  app.add_option("--in", options.inputs, "recording, or folder of a rosbag2; may be given several times: the parts of one recording, in this order")
+      ->required()
+      ->allow_extra_args(false)
+      ->check(CLI::ExistingPath);
+  app.add_option("--out", options.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused");
+  app.add_option("--topics", options.topic_map,
+                 "text file, a line for each topic: TOPIC USE [time=auto|stamp|recorded]; without it they are guessed. Uses: " + importer::UseWords())
+      ->check(CLI::ExistingFile);
+  app.add_flag("--list", options.lists, "print the topics and what they would become, as a file for --topics, and exit");
   app.add_flag("--force", options.force, "replace an existing --out");
   app.set_version_flag("--version", "lookout-import " + runtime::Version());
+  app.footer("Exit code: 0 done; 1 failed; 2 wrong command line or config; 3 the log is written, but the recording is damaged.");
   try {
     app.parse(argc, argv);
+    if (!options.lists && (options.config_folder.empty() || options.output.empty()))
+      throw CLI::RequiredError("--config and --out are required", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
   }
@@ -64,18 +80,9 @@ void Write(log::LogOutput& output, const bus::Channel& channel, const Message& m
   output.Write(Utime(std::chrono::microseconds(message.utime_us)), channel.name, bus::Encode(message));
 }
 
-void Import(const Options& options) {
-  auto inputs = io::FilesIn(options.config_folder);
-  inputs.push_back(options.input);
-  log::LogOutput output(options.output, {.force = options.force, .inputs = std::move(inputs), .tell = [](const std::string& line) {
-                                           std::cerr << "lookout-import: " << line << '\n';
-                                         }});
-  if (const auto reason = io::WhyNot(options.input, io::Wanted::kDetections); !reason.empty()) throw std::runtime_error(reason);
-  if (!importer::IsFerryScans(options.input)) {
-    throw std::runtime_error(options.input.string() +
-                             ": is no recording that is known here: lidar detections of Autoferry (scenarioN_lidar_detections.json)");
-  }
-  const auto scans = importer::ReadFerryScans(options.input);
+void ImportDetections(const Options& options, const fs::path& input, log::LogOutput& output) {
+  if (options.inputs.size() > 1) throw std::runtime_error(input.string() + ": detections are read one file at a time");
+  const auto scans = importer::ReadFerryScans(input);
   const auto poses = importer::ToPoses(scans);
   auto run_info = runtime::MakeRunInfo("import", options.config_folder);
   run_info.utime_us = poses.front().utime_us;
@@ -95,12 +102,52 @@ void Import(const Options& options) {
                      static_cast<double>(scans.back().utime_us - scans.front().utime_us) * 1e-6);
 }
 
+bool IsRecording(const fs::path& file) {
+  const auto kind = io::FileKindOf(file);
+  return kind == io::FileKind::kRosBag || kind == io::FileKind::kMcap || kind == io::FileKind::kSqlite;
+}
+
+// @return the exit code
+int Import(const Options& options) {
+  std::vector<fs::path> files;
+  for (const auto& input : options.inputs) {
+    for (auto& file : importer::FilesOfRecording(input)) files.push_back(std::move(file));
+  }
+  for (const auto& file : files) {
+    if (const auto reason = io::WhyNot(file, io::Wanted::kImport); !reason.empty()) throw std::runtime_error(reason);
+  }
+  const bool is_recording = IsRecording(files.front());
+  if (!is_recording && !importer::IsFerryScans(files.front())) {
+    throw std::runtime_error(files.front().string() +
+                             ": is no recording that is known here: ROS bag, rosbag2, MCAP, or lidar detections of Autoferry "
+                             "(scenarioN_lidar_detections.json)");
+  }
+  if (options.lists) {
+    if (!is_recording) throw std::runtime_error(files.front().string() + ": has no topics");
+    const auto topics = importer::TopicsOf(files);
+    std::cout << importer::TopicMapText(topics, importer::GuessTopics(topics));
+    return EXIT_SUCCESS;
+  }
+  auto inputs = io::FilesIn(options.config_folder);
+  inputs.insert(inputs.end(), files.begin(), files.end());
+  log::LogOutput output(options.output, {.force = options.force, .inputs = std::move(inputs), .tell = [](const std::string& line) {
+                                           std::cerr << "lookout-import: " << line << '\n';
+                                         }});
+  if (!is_recording) {
+    ImportDetections(options, files.front(), output);
+    return EXIT_SUCCESS;
+  }
+  const auto topic_map = options.topic_map.empty() ? std::nullopt : std::optional(options.topic_map);
+  const bool is_whole = importer::ImportRecording({options.config_folder, files, topic_map}, output, std::cerr);
+  output.Commit();
+  return is_whole ? EXIT_SUCCESS : kExitDamaged;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   io::CatchStopSignals();
-  Import(ParseOptions(argc, argv));
-  return EXIT_SUCCESS;
+  return Import(ParseOptions(argc, argv));
 } catch (const config::ConfigError& error) {
   std::cerr << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;

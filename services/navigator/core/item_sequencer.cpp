@@ -52,6 +52,18 @@ std::vector<Item> ItemSequencer::OnLines(Utime arrival, const std::vector<std::s
   return items;
 }
 
+std::vector<Item> ItemSequencer::OnImu(Utime arrival, const StrapdownSample& sample, const std::string& source) {
+  std::vector<Item> items;
+  if (!last_ || arrival > *last_) items = AdvanceTo(arrival);
+  if (arrival < *last_ - kMaxStepBack) {
+    ++num_stale_sentences_;
+    return items;
+  }
+  items.push_back(Make(arrival, ItemKind::kImu, source));
+  items.back().imu = sample;
+  return items;
+}
+
 std::vector<Item> ItemSequencer::OnLidarSentence(Utime arrival, const std::string& sentence) {
   std::vector<Item> items;
   if (!last_) items.push_back(Start(arrival));

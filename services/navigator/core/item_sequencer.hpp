@@ -30,6 +30,9 @@ class ItemSequencer {
   /// @param arrival  less than the last item by up to kMaxStepBack: it waited, and gets the time of the last item
   std::vector<Item> OnLines(Utime arrival, const std::vector<std::string>& lines, const std::string& source = kUdpSource);
 
+  /// A sample of an IMU that does not come as a sentence. The same as OnLines.
+  std::vector<Item> OnImu(Utime arrival, const StrapdownSample& sample, const std::string& source);
+
   /// A sentence out of the lidar. It comes late, in a bundle, so it does not move the ticks.
   std::vector<Item> OnLidarSentence(Utime arrival, const std::string& sentence);
 

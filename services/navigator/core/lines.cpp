@@ -249,6 +249,11 @@ bool IsSourceName(std::string_view name) {
          std::ranges::all_of(name, [](char character) { return (character >= 'a' && character <= 'z') || (character >= '0' && character <= '9'); });
 }
 
+bool IsImportedSource(std::string_view name) {
+  return name.starts_with(kImportedSource) && name.size() > kImportedSource.size() && name.size() <= kMaxImportedSourceCharacters &&
+         std::ranges::all_of(name, [](char character) { return character > ' ' && character < '\x7F'; });
+}
+
 DatagramLines LineAssembler::Add(Bytes bytes) {
   // A tag block and junk may stand before a line of full length.
   constexpr std::size_t kMaxHeld = 4 * kMaxLineCharacters;

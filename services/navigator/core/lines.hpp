@@ -43,6 +43,12 @@ bool IsLine(std::string_view line);
 /// @return whether `name` may stand in NAV_RAW for a source: 1 to 32 of a to z and 0 to 9
 bool IsSourceName(std::string_view name);
 
+/// @return whether `name` may stand in NAV_RAW for what lookout-import took out of a recording of others: "imported:" and the topic, 64 characters at
+///         most, printable ASCII without blanks. No input in config has such a name.
+bool IsImportedSource(std::string_view name);
+inline constexpr std::string_view kImportedSource = "imported:";
+inline constexpr std::size_t kMaxImportedSourceCharacters = 64;
+
 /// Puts lines together that their senders cut over several datagrams, as gateways from serial lines do. The end of a datagram is held back while it
 /// may go on: it begins as a line, and has neither an end of line nor a checksum. A sentence without a checksum looks like that, too: where those
 /// count it is returned at once, except for a datagram that goes on with a line itself, and once more as a part of the complete line if it does go

@@ -161,6 +161,24 @@ TEST_F(ExportTest, PlyHoldsOneVertexPerReturnOfTheScan) {
   EXPECT_NE(errors_.find("no scan 9"), std::string::npos) << errors_;
 }
 
+TEST_F(ExportTest, PcdHoldsOnePointPerReturnOfTheScan) {
+  Add(bus::kLidarScan, MakeScan(0));
+  Add(bus::kSegments, MakeSegments(MakeScan(0), 1));
+  Add(bus::kLidarScan, MakeScan(1, 1));
+  Add(bus::kSegments, MakeSegments(MakeScan(1, 1), 2));
+  ASSERT_EQ(Export("returns", "pcd"), kExitFine) << errors_;
+  EXPECT_NE(text_.find("\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA binary\n"), std::string::npos);
+  const std::string end = "DATA binary\n";
+  const auto body = text_.substr(text_.find(end) + end.size());
+  constexpr std::size_t kPointBytes = 3 * 4 + 4 + 4 + 2 + 4;
+  ASSERT_EQ(body.size(), 2 * kPointBytes);
+  EXPECT_EQ(body.substr(kPointBytes, 4), std::string("\0\0\x20\x41", 4));  // x = 10.0F of the upper ring
+  EXPECT_EQ(body[kPointBytes + 16], 2);                                    // label
+  EXPECT_EQ(body[kPointBytes + 20], 1);                                    // ring
+  EXPECT_EQ(Export("returns", "pcd", 9), kExitFailed);
+  EXPECT_EQ(Export("pose", "pcd"), kExitUsage);
+}
+
 TEST_F(ExportTest, PlyColoursTellSegmentsApart) {
   auto scan = MakeScan(0, 1);
   auto segments = MakeSegments(scan);

@@ -33,15 +33,15 @@ TEST(Outputs, HoldEachMapInEachFormatOfMaps) {
 }
 
 TEST(Outputs, SayWhereFormatsAndOptionsCanBeGiven) {
-  EXPECT_EQ(FormatNames(), (std::vector<std::string>{"csv", "ply", "svg", "geojson", "kml", "gpx"}));
-  EXPECT_EQ(
-      FormatsText(),
-      "csv of every table; ply of returns; svg of returns, obstacles, tracks, pose and merges; geojson of map, obstacles, tracks and pose; kml and "
-      "gpx of obstacles, tracks and pose");
+  EXPECT_EQ(FormatNames(), (std::vector<std::string>{"csv", "ply", "pcd", "svg", "geojson", "kml", "gpx"}));
+  EXPECT_EQ(FormatsText(),
+            "csv of every table; ply and pcd of returns; svg of returns, obstacles, tracks, pose and merges; geojson of map, obstacles, tracks and "
+            "pose; kml and "
+            "gpx of obstacles, tracks and pose");
   EXPECT_EQ(PlacesText(kSpanOption), "csv of every table but map; geojson, kml and gpx of obstacles, tracks and pose");
   EXPECT_EQ(PlacesText(kNearOption), "csv, geojson, kml and gpx of obstacles, tracks and pose");
   EXPECT_EQ(PlacesText(kScanOption),
-            "csv of merges; ply of returns; svg of returns, obstacles and merges; geojson, kml and gpx of obstacles and tracks");
+            "csv of merges; ply and pcd of returns; svg of returns, obstacles and merges; geojson, kml and gpx of obstacles and tracks");
   EXPECT_EQ(PlacesText(kLastScanOption), "geojson, kml and gpx of obstacles and tracks");
   EXPECT_EQ(PlacesText(kAllScansOption), "csv of merges");
   EXPECT_EQ(PlacesText(kConfigOption), "csv and svg of merges");

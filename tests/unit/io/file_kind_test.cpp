@@ -68,7 +68,7 @@ TEST_F(FileKinds, OfWhatIsNoFileAreToldWithoutOpeningIt) {
   EXPECT_EQ(FileKindOf("/dev/null"), FileKind::kDevice);
   ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
   EXPECT_EQ(FileKindOf(file_), FileKind::kPipe);
-  for (const auto wanted : {Wanted::kLog, Wanted::kCapture, Wanted::kTextLog, Wanted::kRecording, Wanted::kDetections}) {
+  for (const auto wanted : {Wanted::kLog, Wanted::kCapture, Wanted::kTextLog, Wanted::kRecording, Wanted::kImport}) {
     EXPECT_NE(WhyNot(file_, wanted).find("is a pipe, no "), std::string::npos);
   }
   EXPECT_THROW(UnpackedFile{file_}, std::runtime_error);

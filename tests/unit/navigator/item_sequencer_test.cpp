@@ -26,6 +26,20 @@ TEST(ItemSequencer, BeginsWithAStartMark) {
   EXPECT_EQ(Text(other.OnLines(NoonPlus(0.03), {"$A", "$B"})), "0 start 0.030\n1 sentence 0.030\n2 sentence 0.030\n");
 }
 
+TEST(ItemSequencer, PutsSamplesOfAnImuInTheirPlace) {
+  ItemSequencer sequencer;
+  const StrapdownSample sample{{0.1, 0.2, 0.3}, {0.0, 0.0, -9.81}};
+  EXPECT_EQ(Text(sequencer.OnImu(NoonPlus(0.03), sample, "imu")), "0 start 0.030\n1 imu 0.030\n");
+  const auto items = sequencer.OnImu(NoonPlus(0.11), sample, "imu");
+  EXPECT_EQ(Text(items), "2 tick 0.100\n3 imu 0.110\n");
+  ASSERT_TRUE(items[1].imu);
+  EXPECT_EQ(items[1].imu->specific_force_mps2.z(), -9.81);
+  EXPECT_EQ(items[1].source, "imu");
+  EXPECT_EQ(Text(sequencer.OnImu(NoonPlus(0.05), sample, "imu")), "4 imu 0.110\n");
+  sequencer.AdvanceTo(NoonPlus(3.0));
+  EXPECT_TRUE(sequencer.OnImu(NoonPlus(1.9), sample, "imu").empty());
+}
+
 TEST(ItemSequencer, MakesNothingAtTheEndWhenNothingCame) {
   ItemSequencer sequencer;
   EXPECT_TRUE(sequencer.Finish(NoonPlus(0)).empty());

@@ -210,6 +210,18 @@ TEST(Service, FromALogReadsNothingElseAndSendsNoRaw) {
   EXPECT_EQ(rig.sent["ATTITUDE"].size(), 1U);
 }
 
+TEST(Service, TakesRawMessagesOutOfRecordingsOfOthers) {
+  Rig rig(TestParams(kFromNavRaw));
+  rig.Send(bus::kNavRaw, RawMessage(0.0, nav_raw_t::KIND_START));
+  for (const char* source : {"imported:/gps/fix", "imported:", "imported:/a b", "other:/fix"}) {
+    auto message = RawMessage(0.1, nav_raw_t::KIND_SENTENCE, HdtLine(1.0));
+    message.source = source;
+    rig.Send(bus::kNavRaw, message);
+  }
+  EXPECT_EQ(rig.Count("nav_raw_bad_text"), 3);
+  EXPECT_EQ(rig.sent["ATTITUDE"].size(), 1U);
+}
+
 TEST(Service, RefusesRawMessagesThatCannotBe) {
   Rig rig(TestParams(kFromNavRaw));
   rig.Send(bus::kNavRaw, RawMessage(0.0, nav_raw_t::KIND_START));

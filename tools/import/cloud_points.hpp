@@ -1,0 +1,50 @@
+// The points of a sensor_msgs/PointCloud2, by whatever names and types its driver gives their fields.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/import/ros_message.hpp"
+
+namespace lookout::importer {
+
+/// A point that is there, in the frame of the cloud: x forward, y left, z up.
+struct RingPoint {
+  double azimuth_rad = 0.0;  // clockwise from x, in [0, 2 pi)
+  double level_m = 0.0;      // distance from the z axis
+  double z_m = 0.0;
+  std::int64_t time_ns = 0;  // since the stamp of the cloud; 0 where it has no times
+  std::int32_t ring = 0;     // as the driver counts; of a cloud without rings its row, or kNoRing
+  std::int32_t row = 0;      // place in the cloud
+  std::int32_t column = 0;
+  std::uint8_t reflectivity = 0;
+};
+
+struct RingCloud {
+  static constexpr std::int32_t kNoRing = -1;
+
+  std::vector<RingPoint> points;  // in the order of the cloud
+  std::int32_t height = 0;
+  std::int32_t width = 0;
+  bool has_rings = false;  // by a field, or as rows
+  bool has_times = false;
+  bool has_reflectivity = false;
+  bool is_clock_other = false;        // stamps of points are more than a second off the cloud's: only their differences count
+  std::int64_t num_empty = 0;         // no return: at the origin, or not finite
+  std::int64_t num_out_of_range = 0;  // beyond kMaxImportRangeM, or of a ring above kMaxImportRings
+};
+
+inline constexpr double kMaxImportRangeM = 600.0;
+inline constexpr double kMinImportRangeM = 0.01;  // nearer is how some drivers say "no return"
+inline constexpr std::int32_t kMaxImportRings = 128;
+
+/// Fields, by name: x y z; `ring`, `line` or `channel`; `time` (s since the stamp, Velodyne), `t` or `offset_time` (ns since the stamp, Ouster),
+/// `timestamp` (s or ns since 1970: Hesai, RoboSense, Livox); `reflectivity` or `intensity`.
+/// A cloud of at most kMaxImportRings rows of several columns without a field for rings has its rows as rings.
+///
+/// @param why  is told in words where there is no result
+std::optional<RingCloud> ToRingCloud(const RosPointCloud& cloud, std::string& why);
+
+}  // namespace lookout::importer

@@ -1,0 +1,85 @@
+#include "tools/import/log_maker.hpp"
+
+#include <utility>
+
+#include "common/bus/decode.hpp"
+#include "services/navigator/wire.hpp"
+#include "services/vlp16/wire.hpp"
+
+namespace lookout::importer {
+
+LogMaker::LogMaker(const vlp16::Params& params, bool has_navigation, Write write)
+    : write_(std::move(write)),
+      data_port_(params.data_port),
+      has_navigation_(has_navigation),
+      bundler_(params.data_port, params.position_port, params.decoder.cut_azimuth_rad) {}
+
+void LogMaker::Add(Utime time, ImportItem item) {
+  num_waiting_bytes_ += item.bytes.size() + item.sentence.size() + sizeof(ImportItem);
+  waiting_.emplace(time, std::move(item));  // of one time in the order in which they came
+  while (num_waiting_bytes_ > kMaxWaitingBytes) ReleaseUntil(waiting_.begin()->first);
+}
+
+void LogMaker::AdvanceTo(Utime recorded) {
+  if (newest_ && recorded < *newest_ - kSetBack) {
+    ReleaseUntil(Utime::max());
+    was_set_back_ = true;
+    newest_ = recorded;
+  }
+  newest_ = newest_ ? std::max(*newest_, recorded) : recorded;
+  ReleaseUntil(*newest_ - kWait);
+}
+
+void LogMaker::ReleaseUntil(Utime until) {
+  while (!waiting_.empty() && waiting_.begin()->first <= until) {
+    auto first = waiting_.extract(waiting_.begin());
+    const auto& item = first.mapped();
+    num_waiting_bytes_ -= item.bytes.size() + item.sentence.size() + sizeof(ImportItem);
+    Release(first.key(), item);
+  }
+}
+
+void LogMaker::Release(Utime time, const ImportItem& item) {
+  const bool is_late = released_ && time < *released_ && !std::exchange(was_set_back_, false);
+  if (is_late) {
+    ++num_late_;
+  } else {
+    released_ = time;
+    if (const auto bundle = bundler_.AdvanceTo(time)) WriteBundle(*bundle);
+    if (has_navigation_) WriteNavigation(sequencer_.AdvanceTo(time));
+  }
+  switch (item.kind) {
+    case ImportItem::Kind::kPacket:
+      if (const auto bundle = bundler_.Add(time, data_port_, item.bytes)) WriteBundle(*bundle);
+      return;
+    case ImportItem::Kind::kSentence:
+      return WriteNavigation(sequencer_.OnLines(time, {item.sentence}, item.source));
+    case ImportItem::Kind::kImu:
+      return WriteNavigation(sequencer_.OnImu(time, item.imu, item.source));
+    case ImportItem::Kind::kScanPart:
+      return write_(time, bus::kLidarScan, item.bytes);
+  }
+}
+
+void LogMaker::WriteBundle(const vlp16::PacketBundle& bundle) {
+  write_(released_.value_or(bundle.time), bus::kLidarPackets, bus::Encode(vlp16::ToMessage(bundle)));
+}
+
+void LogMaker::WriteNavigation(const std::vector<navigator::Item>& items) {
+  for (const auto& item : items) write_(released_.value_or(item.time), bus::kNavRaw, bus::Encode(navigator::ToMessage(item)));
+}
+
+void LogMaker::Finish() {
+  ReleaseUntil(Utime::max());
+  if (!released_) return;
+  if (const auto bundle = bundler_.Finish(*released_)) WriteBundle(*bundle);
+  if (has_navigation_) WriteNavigation(sequencer_.Finish(*released_));
+}
+
+std::vector<Counter> LogMaker::counters() const {
+  auto counters = bundler_.counters();
+  for (const auto& counter : sequencer_.counters()) counters.push_back(counter);
+  return counters;
+}
+
+}  // namespace lookout::importer

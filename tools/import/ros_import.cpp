@@ -1,0 +1,226 @@
+#include "tools/import/ros_import.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/bus/decode.hpp"
+#include "services/navigator/core/lines.hpp"
+#include "tools/import/ros_message.hpp"
+#include "tools/import/ros_sentences.hpp"
+
+namespace lookout::importer {
+
+namespace {
+
+std::optional<Utime> UtimeOfNs(std::int64_t time_ns) { return UtimeFromWire(time_ns >= 0 ? time_ns / 1000 : (time_ns - 999) / 1000); }
+
+bool IsNear(std::int64_t one_ns, std::int64_t other_ns) {
+  std::int64_t off_ns = 0;
+  return !__builtin_sub_overflow(one_ns, other_ns, &off_ns) && off_ns >= -kMaxStampOffNs && off_ns <= kMaxStampOffNs;
+}
+
+// rad/s and m/s2: what NAV_RAW takes.
+constexpr double kMaxImportImuValue = 1000.0;
+
+}  // namespace
+
+std::string RosImport::SourceOf(const std::string& topic) {
+  std::string source(navigator::kImportedSource);
+  const auto room = navigator::kMaxImportedSourceCharacters - source.size();
+  for (const char letter : topic.substr(topic.size() > room ? topic.size() - room : 0)) source += letter > ' ' && letter < '\x7F' ? letter : '_';
+  return source;
+}
+
+void RosImport::Learn(Recording& recording) {
+  constexpr int kNumLearned = 20;
+  int num_clouds = 0;
+  const bool has_clouds = std::ranges::any_of(map_, [](const auto& use) { return use.second.use == Use::kLidarScan; });
+  while (has_clouds && num_clouds < kNumLearned) {
+    const auto message = recording.Next();
+    if (!message) return;
+    const auto use = map_.find(message->topic->name);
+    if (use == map_.end() || use->second.use != Use::kLidarScan) continue;
+    if (const auto cloud = ParsePointCloud(message->topic->encoding, message->bytes)) {
+      clouds_.Learn(*cloud);
+      ++num_clouds;
+    }
+  }
+}
+
+void RosImport::Take(const RecordedMessage& message) {
+  const auto found = map_.find(message.topic->name);
+  if (found == map_.end() || found->second.use == Use::kNone) return;
+  const auto use = found->second;
+  auto& tally = tallies_[message.topic->name];
+  switch (use.use) {
+    case Use::kLidarPackets:
+      TakePackets(message, use.time, tally);
+      break;
+    case Use::kLidarScan:
+      TakeCloud(message, use.time, tally);
+      break;
+    case Use::kImu:
+    case Use::kImuFlu:
+      TakeImu(message, use, tally);
+      break;
+    case Use::kSentences:
+      TakeSentence(message, use.time, tally);
+      break;
+    case Use::kFix:
+      TakeFix(message, use.time, tally);
+      break;
+    case Use::kVelocity:
+      TakeVelocity(message, use.time, tally);
+      break;
+    case Use::kNone:
+      break;
+  }
+  if (const auto recorded = UtimeOfNs(message.time_ns)) log_.AdvanceTo(*recorded);
+}
+
+// nullopt where the one that counts is no time.
+std::optional<std::int64_t> RosImport::TimeNsOf(const RecordedMessage& message, std::int64_t stamp_ns, TimeBasis basis, TopicTally& tally) {
+  bool uses_stamp = basis == TimeBasis::kStamp;
+  if (basis == TimeBasis::kAuto) {
+    uses_stamp = stamp_ns != 0 && IsNear(stamp_ns, message.time_ns);
+    tally.num_other_time += uses_stamp ? 0 : 1;
+  }
+  const auto time_ns = uses_stamp ? stamp_ns : message.time_ns;
+  if (UtimeOfNs(time_ns)) return time_ns;
+  ++tally.num_refused;
+  return std::nullopt;
+}
+
+void RosImport::TakePackets(const RecordedMessage& message, TimeBasis basis, TopicTally& tally) {
+  const auto scan = ParseVelodyneScan(message.topic->encoding, message.bytes);
+  if (!scan) {
+    ++tally.num_refused;
+    return;
+  }
+  tally.num_used += scan->packets.empty() ? 0 : 1;
+  tally.num_empty += scan->packets.empty() ? 1 : 0;
+  for (const auto& packet : scan->packets) {
+    auto stamp_ns = packet.stamp_ns;
+    // A scan is recorded when its last packet is there: by that clock the others came as much earlier as their stamps say.
+    const auto before_last_ns = scan->packets.back().stamp_ns - packet.stamp_ns;
+    const bool is_off = basis == TimeBasis::kAuto && !IsNear(stamp_ns, message.time_ns);
+    if ((is_off || basis == TimeBasis::kRecorded) && before_last_ns >= 0 && before_last_ns <= kMaxStampOffNs / 10) {
+      tally.num_other_time += is_off ? 1 : 0;
+      stamp_ns = message.time_ns - before_last_ns;
+    } else if (basis == TimeBasis::kRecorded || is_off) {
+      stamp_ns = message.time_ns;
+    }
+    const auto time = UtimeOfNs(stamp_ns);
+    if (!time) {
+      ++tally.num_refused;
+      continue;
+    }
+    ImportItem item;
+    item.bytes.assign(packet.payload.begin(), packet.payload.end());
+    log_.Add(*time, std::move(item));
+  }
+}
+
+void RosImport::TakeCloud(const RecordedMessage& message, TimeBasis basis, TopicTally& tally) {
+  const auto cloud = ParsePointCloud(message.topic->encoding, message.bytes);
+  if (!cloud) {
+    ++tally.num_refused;
+    return;
+  }
+  const auto time_ns = TimeNsOf(message, cloud->header.stamp_ns, basis, tally);
+  if (!time_ns) return;
+  const auto parts = clouds_.Convert(*cloud, *time_ns, "PointCloud2");
+  ++(parts.empty() ? tally.num_empty : tally.num_used);
+  for (const auto& part : parts) {
+    ImportItem item;
+    item.kind = ImportItem::Kind::kScanPart;
+    item.bytes = bus::Encode(part);
+    log_.Add(Utime(std::chrono::microseconds(part.end_utime_us)), std::move(item));
+  }
+}
+
+void RosImport::TakeImu(const RecordedMessage& message, const TopicUse& use, TopicTally& tally) {
+  const auto imu = ParseImu(message.topic->encoding, message.bytes);
+  if (!imu) {
+    ++tally.num_refused;
+    return;
+  }
+  const auto time_ns = TimeNsOf(message, imu->header.stamp_ns, use.time, tally);
+  if (!time_ns) return;
+  const auto time = *UtimeOfNs(*time_ns);
+  ImportItem item;
+  item.kind = ImportItem::Kind::kImu;
+  item.source = SourceOf(message.topic->name);
+  item.imu = {{imu->angular_velocity_radps[0], imu->angular_velocity_radps[1], imu->angular_velocity_radps[2]},
+              {imu->linear_acceleration_mps2[0], imu->linear_acceleration_mps2[1], imu->linear_acceleration_mps2[2]}};
+  for (auto* vector : {&item.imu.angular_velocity_radps, &item.imu.specific_force_mps2}) {
+    if (use.use == Use::kImuFlu) *vector = {vector->x(), -vector->y(), -vector->z()};
+    for (int i = 0; i < 3; ++i) {
+      if (std::abs((*vector)[i]) <= kMaxImportImuValue) continue;  // not for NaN
+      ++tally.num_empty;
+      return;
+    }
+  }
+  ++tally.num_used;
+  log_.Add(time, std::move(item));
+}
+
+void RosImport::AddSentence(Utime time, const std::string& topic, std::string sentence, TopicTally& tally) {
+  if (!navigator::IsLine(sentence)) {
+    ++tally.num_empty;
+    return;
+  }
+  ImportItem item;
+  item.kind = ImportItem::Kind::kSentence;
+  item.sentence = std::move(sentence);
+  item.source = SourceOf(topic);
+  log_.Add(time, std::move(item));
+}
+
+void RosImport::TakeSentence(const RecordedMessage& message, TimeBasis basis, TopicTally& tally) {
+  const bool has_header = message.topic->type == kTypeSentence;
+  const auto sentence = ParseSentenceMessage(message.topic->encoding, message.bytes, has_header);
+  if (!sentence) {
+    ++tally.num_refused;
+    return;
+  }
+  const auto time_ns = TimeNsOf(message, sentence->header.stamp_ns, has_header ? basis : TimeBasis::kRecorded, tally);
+  if (!time_ns) return;
+  const auto time = *UtimeOfNs(*time_ns);
+  // Some drivers leave the end of the line in it, or put several lines into one message.
+  const auto lines = navigator::SplitDatagram({reinterpret_cast<const std::uint8_t*>(sentence->text.data()), sentence->text.size()});
+  ++(lines.lines.empty() ? tally.num_empty : tally.num_used);
+  for (const auto& line : lines.lines) AddSentence(time, message.topic->name, line, tally);
+}
+
+void RosImport::TakeFix(const RecordedMessage& message, TimeBasis basis, TopicTally& tally) {
+  const auto fix = ParseNavSatFix(message.topic->encoding, message.bytes);
+  if (!fix) {
+    ++tally.num_refused;
+    return;
+  }
+  const auto time_ns = TimeNsOf(message, fix->header.stamp_ns, basis, tally);
+  if (!time_ns) return;
+  const auto time = *UtimeOfNs(*time_ns);
+  ++tally.num_used;
+  // Its accuracy first: it is that of the fixes behind it.
+  if (auto accuracy = GstOf(*fix, time); !accuracy.empty()) AddSentence(time, message.topic->name, std::move(accuracy), tally);
+  AddSentence(time, message.topic->name, GgaOf(*fix, time), tally);
+}
+
+void RosImport::TakeVelocity(const RecordedMessage& message, TimeBasis basis, TopicTally& tally) {
+  const auto twist = ParseTwist(message.topic->encoding, message.bytes, message.topic->type == kTypeTwistWithCovariance);
+  if (!twist) {
+    ++tally.num_refused;
+    return;
+  }
+  const auto time_ns = TimeNsOf(message, twist->header.stamp_ns, basis, tally);
+  if (!time_ns) return;
+  const auto time = *UtimeOfNs(*time_ns);
+  auto sentence = VtgOf(*twist);
+  ++(sentence.empty() ? tally.num_empty : tally.num_used);
+  if (!sentence.empty()) AddSentence(time, message.topic->name, std::move(sentence), tally);
+}
+
+}  // namespace lookout::importer
