@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fillColours, kRamps, luminance, parseColour, rampColour, distinctColour, rampOf, standingOut, type Theme } from "../src/drawing/colours.js";
 import { blindSectors } from "../src/drawing/blind.js";
-import { placeFor } from "../src/drawing/labels.js";
+import { placeFor, within } from "../src/drawing/labels.js";
 import { lookAt, perspective, product, project } from "../src/drawing/matrix.js";
 import { gridStep, latitudeOf, longitudeOf, mercatorX, mercatorY, offset, position, widthAt, zoomFor } from "../src/drawing/mercator.js";
 import { ringStep } from "../src/drawing/own_boat.js";
@@ -162,6 +162,14 @@ test("a label goes to the next side that is free, or nowhere", () => {
   assert.equal(placeFor(label, 60, 20, size, [{ x: 120, y: 95, width: 10, height: 10 }])?.x, 30);
   assert.equal(placeFor(label, 60, 20, size, [{ x: 0, y: 0, width: 200, height: 200 }]), null);
   assert.equal(placeFor({ ...label, x_px: 190 }, 60, 20, size, [])?.x, 120);
+});
+test("a label that must be drawn lies over marks and other labels, but not under a button", () => {
+  const label = { x_px: 170, y_px: 100, radius_px: 4 }, sheet = { width_px: 200, height_px: 400, covered: [{ x: 90, y: 60, width: 110, height: 80 }] };
+  const box = within(label, 60, 20, sheet, []);
+  assert.ok(box.x + box.width < 90 || box.y + box.height < 60 || box.y > 140, JSON.stringify(box));
+  const all = [{ x: 0, y: 0, width: 200, height: 400 }];
+  assert.deepEqual(within(label, 60, 20, sheet, all), box);
+  assert.equal(within(label, 60, 20, { ...sheet, covered: all }, []).x, 100);
 });
 test("the eye sees its target in the middle, and nothing behind it", () => {
   const m = product(perspective(0.9, 1.5, 1, 100), lookAt([0, 0, 10], [20, 0, 0], [0, 0, 1]));

@@ -30,22 +30,26 @@ function widthOf(context: CanvasRenderingContext2D, text: string): number {
   return sum;
 }
 
+/** What labels are drawn on. `covered`: there something lies over it, so that nothing can be read. */
+export interface Sheet { width_px: number; height_px: number; covered: readonly Box[] }
+
 /** Draws labels in their order, at most `most`. `taken` holds boxes that nothing may cover, and gets those that were drawn. */
-export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], theme: Theme, size: { width_px: number; height_px: number }, most: number, taken: Box[]): void {
+export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], theme: Theme, sheet: Sheet, most: number, taken: Box[]): void {
   context.font = kFont;
   context.textBaseline = "middle";
   context.textAlign = "left";
   context.lineJoin = "round";
   const drawn: Box[] = [];
+  taken.push(...sheet.covered);
   for (const label of labels) {
     if (drawn.length >= most) return;
     const fit = [label.lines, ...(label.shorter ?? [])].map((lines) => {
       const width = Math.max(...lines.map((line) => widthOf(context, line))) + 10, height = kLine_px * lines.length + 4;
-      return { lines, width, height, box: placeFor(label, width, height, size, taken) };
+      return { lines, width, height, box: placeFor(label, width, height, sheet, taken) };
     });
     const found = fit.find(({ box }) => box !== null) ?? (label.shorter === undefined ? undefined : fit.at(-1));
     if (found === undefined) continue;
-    const { lines, width, height } = found, box = found.box ?? within(label, width, height, size, drawn);
+    const { lines, width, height } = found, box = found.box ?? within(label, width, height, sheet, drawn);
     taken.push(box);
     drawn.push(box);
     if (label.isBoxed) {
@@ -67,15 +71,16 @@ export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], t
   }
 }
 
-// Beside it, on the screen, over marks if it must be, but over no label where any place is left: first to the side with more room.
+// Beside it, on the screen, over marks if it must be, but over no label and under no button where any place is left: first to the side with more room.
 const kShifts_px = [0, -22, 22, -44, 44, -66, 66, -88, 88];
-function within(label: Pick<Label, "x_px" | "y_px" | "radius_px">, width: number, height: number, size: { width_px: number; height_px: number }, drawn: readonly Box[]): Box {
+export function within(label: Pick<Label, "x_px" | "y_px" | "radius_px">, width: number, height: number, sheet: Sheet, drawn: readonly Box[]): Box {
   const inside = (at: number, most: number) => Math.max(2, Math.min(at, most - 2));
   const gap = label.radius_px + 6, sides = [label.x_px + gap, label.x_px - gap - width];
-  if (label.x_px > size.width_px / 2) sides.reverse();
+  if (label.x_px > sheet.width_px / 2) sides.reverse();
   const boxes = kShifts_px.flatMap((shift) => sides.map((left) => (
-    { x: inside(left, size.width_px - width), y: inside(label.y_px - height / 2 + shift, size.height_px - height), width, height })));
-  return boxes.find((box) => drawn.every((other) => isApart(box, other))) ?? boxes[0]!;
+    { x: inside(left, sheet.width_px - width), y: inside(label.y_px - height / 2 + shift, sheet.height_px - height), width, height })));
+  const isFree = (box: Box, of: readonly Box[]) => of.every((other) => isApart(box, other));
+  return boxes.find((box) => isFree(box, drawn) && isFree(box, sheet.covered)) ?? boxes.find((box) => isFree(box, sheet.covered)) ?? boxes[0]!;
 }
 function isApart(a: Box, b: Box): boolean { return a.x + a.width < b.x || b.x + b.width < a.x || a.y + a.height < b.y || b.y + b.height < a.y; }
 

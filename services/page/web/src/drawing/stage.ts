@@ -3,6 +3,7 @@ import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { duration } from "../units.js";
 import { listen, type Gestures } from "./gestures.js";
+import type { Box } from "./labels.js";
 
 const kOld_s = 1;
 const kMostPixelsPerPixel = 2;  // finer screens cost more than the eye has of it
@@ -47,6 +48,8 @@ export class Stage {
   width_px = 1;
   height_px = 1;
   scale = 1;
+  /** Where buttons lie over the canvases: on a low screen in more than one column. */
+  covered: readonly Box[] = [];
   private readonly tools = make("div", "drawing-tools");
   private readonly old = make("p", "drawing-old");
   private readonly note = make("p", "drawing-note");
@@ -64,7 +67,8 @@ export class Stage {
     for (const hidden of [this.old, this.tip]) hidden.setAttribute("aria-hidden", "true");
     for (const element of [this.old, this.note, this.tip]) element.hidden = true;
     this.element.append(...below, this.plan, this.note, this.old, this.tip, this.tools);
-    new ResizeObserver(() => { this.fit(); }).observe(this.element);
+    const sizes = new ResizeObserver(() => { this.fit(); });
+    for (const element of [this.element, this.tools]) sizes.observe(element);
     listen(this.plan, gestures);
     state.on(["picture", "marked", "settings", "showing", "connection", "sources"], () => { this.ask(); });
     state.on(["age", "picture", "showing"], () => { this.tellAge(); });
@@ -141,6 +145,9 @@ export class Stage {
       if (canvas.width !== width) canvas.width = width;
       if (canvas.height !== height) canvas.height = height;
     }
+    const all = this.element.getBoundingClientRect();
+    this.covered = [...this.tools.children].map((child) => child.getBoundingClientRect())
+      .map(({ x, y, width, height }) => ({ x: x - all.x, y: y - all.y, width, height }));
     this.ask();
   }
 }

@@ -103,7 +103,7 @@ export class CloudView implements View {
       this.points.setPoints(picture.returns.level_m, colours.bytes, picture.returns.count, colours.version);
     }
     this.points.draw(matrix, (this.eye.distance_m < 40 ? 2.6 : 2) * this.stage.scale);
-    drawLabels(context, labels, theme, this.stage, width_px < 500 ? 8 : 20, [{ x: width_px - 60, y: height_px - 170, width: 60, height: 170 }]);
+    drawLabels(context, labels, theme, this.stage, width_px < 500 ? 8 : 20, []);
   }
   private toScreen(matrix: Float32Array, x: number, y: number, z: number): [number, number] | null {
     const place = project(matrix, x, y, z);

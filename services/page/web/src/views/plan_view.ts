@@ -122,7 +122,7 @@ export abstract class PlanView implements View {
   private paintScene(scene: Scene): void {
     const { context } = scene, { width_px, height_px } = this.stage;
     const { taken } = scene;
-    taken.push({ x: 0, y: height_px - 44, width: 150, height: 44 }, { x: width_px - 60, y: height_px - 56 * 6, width: 60, height: 56 * 6 });
+    taken.push({ x: 0, y: height_px - 44, width: 150, height: 44 });
     if (this.hasRings) taken.push(...paintRings(scene));
     paintGuardZones(scene);
     paintLand(scene);
