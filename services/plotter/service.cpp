@@ -72,6 +72,7 @@ void Service::UseTracks(std::span<const tracks_t> parts) {
     // Another process of the tracker: its ids are of other things.
     ++counts_["runs_begun"];
     tracks_.clear();
+    names_.clear();
     ComposeTargets();
     for (const auto& output : outputs_) output->TellTargets(ToldNow());
   }
@@ -95,6 +96,7 @@ void Service::ComposeTargets() {
     if (track.state == TargetState::kLost || (track.state == TargetState::kAcquiring && !params_.takes_tentative)) continue;
     Target& target = targets.emplace_back(track);
     target.position = Propagated(track.position, track.velocity_east_mps, track.velocity_north_mps, ahead_s);
+    if (const auto name = names_.find(track.id); name != names_.end()) target.given_name = name->second;
     if (target.tcpa_s > 0.0) target.tcpa_s = std::max(0.0, target.tcpa_s - ahead_s);
     if (const auto level = levels.find(track.id); level != levels.end() && track.id != 0) target.level = level->second;
   }
@@ -111,6 +113,10 @@ void Service::ComposeTargets() {
 void Service::OnAlerts(const alerts_t& message) {
   auto notices = ToNotices(message);
   if (const auto* refusal = std::get_if<Fault>(&notices)) return alerts_refused_.Add(*refusal);
+  // An alert is worth more than how a thing is called.
+  auto names = ToGivenNames(message);
+  if (!names) ++counts_["names_refused"];
+  names_ = std::move(names).value_or(GivenNames{});
   alerts_seen_ = passed_.passed();
   alerts_ = std::get<std::vector<Notice>>(std::move(notices));
   TellNotices();

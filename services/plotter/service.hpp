@@ -60,8 +60,8 @@ class Service {
   bool MayTellTargets() const;
   void StopTargets();
 
-  static constexpr auto kCountNames =
-      std::to_array<std::string_view>({"tracks_incomplete", "tracks_inconsistent", "acks_sent", "acks_of_no_alert", "times_unwatched", "runs_begun"});
+  static constexpr auto kCountNames = std::to_array<std::string_view>(
+      {"tracks_incomplete", "tracks_inconsistent", "acks_sent", "acks_of_no_alert", "times_unwatched", "runs_begun", "names_refused"});
 
   bus::Bus& bus_;
   Params params_;
@@ -76,6 +76,7 @@ class Service {
   Utime tracks_time_;            // to which they are propagated
   std::optional<Utime> begin_;   // of the tracker's process
   std::vector<Notice> alerts_;   // of the last ALERTS
+  GivenNames names_;             // the same
   std::optional<Notice> own_notice_;
   std::vector<Notice> notices_;  // alerts_ and own_notice_
   bool are_told_ = false;        // targets

@@ -8,6 +8,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/pose.hpp"
+#include "common/core/printable.hpp"
 #include "common/messages/alert_sound.hpp"
 
 namespace lookout::plotter {
@@ -146,6 +147,17 @@ std::variant<std::vector<Notice>, Fault> ToNotices(const alerts_t& message) {
                        .text = alert.text});
   }
   return notices;
+}
+
+std::optional<GivenNames> ToGivenNames(const alerts_t& message) {
+  GivenNames names;
+  for (std::size_t i = 0; i < message.given_name.size(); ++i) {
+    const auto& name = message.given_name[i];
+    const auto track_id = message.named_track_id[i];
+    if (!lookout::IsName(name) || (!names.empty() && track_id <= names.rbegin()->first)) return std::nullopt;
+    names.emplace_hint(names.end(), track_id, name);
+  }
+  return names;
 }
 
 OwnShip ToOwnShip(const pose_t& message) {

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -31,6 +35,9 @@ inline constexpr Fault kAlertsText = "alerts_refused_text";  // more than 1000 b
 inline constexpr Fault kAlertsId = "alerts_refused_id";      // 0, out of bounds, or twice
 inline constexpr std::array kAlertsFaults{kAlertsTime, kAlertsCode, kAlertsText, kAlertsId};
 
+/// By track.
+using GivenNames = std::map<std::int64_t, std::string>;
+
 /// One part of TRACKS.
 struct TracksPart {
   Utime time;                   // to which the states are propagated
@@ -41,6 +48,8 @@ struct TracksPart {
 /// The whole message is valid, or it is refused.
 std::variant<TracksPart, Fault> ToTracksPart(const tracks_t& message);
 std::variant<std::vector<Notice>, Fault> ToNotices(const alerts_t& message);
+/// nullopt: one of them is no name, or ids of tracks do not increase.
+std::optional<GivenNames> ToGivenNames(const alerts_t& message);
 
 /// @param message  one that messages::ToPose accepts
 OwnShip ToOwnShip(const pose_t& message);

@@ -89,7 +89,8 @@ std::size_t RoomFor(std::string_view before, std::string_view after) {
 }
 
 // The name where it fits, else the number at its end.
-std::string NameWithin(const std::string& name, std::size_t max_bytes) {
+std::string NameWithin(const Target& target, std::size_t max_bytes) {
+  const auto& name = AsciiNameOf(target, max_bytes);
   if (name.size() <= max_bytes) return FieldText(name, max_bytes);
   const auto last_word = name.rfind(' ');
   return FieldText(last_word == std::string::npos ? name : name.substr(last_word + 1), max_bytes);
@@ -191,17 +192,17 @@ std::string Ttm(std::string_view talker, const OwnShip& own, const Target& targe
                                   Degrees(relative.bearing_rad), Speed(target.speed_mps, unit), Degrees(target.course_rad),
                                   std::isfinite(target.course_rad) ? "T" : "", Number(target.cpa_m / MetresIn(unit), 4),
                                   Number(target.tcpa_s / kSecondsPerMinute, 3), LetterOf(unit));
-  // Time and way of acquisition are of version 3 on; they give way to numbers of more digits than any target at sea has.
-  constexpr std::size_t kLeastName = 6;
+  // Time and way of acquisition are of version 3 on; they give way to names that people gave, and to numbers of more digits than any target at sea has.
+  const std::size_t least_name = target.given_name.empty() ? 6 : target.given_name.size();
   auto after = fmt::format(",{},,{},A", LetterOf(target.state), TimeOfDay(own.time));
-  if (RoomFor(before, after) < kLeastName) after = fmt::format(",{},", LetterOf(target.state));
-  return Sentence(before + NameWithin(target.name, RoomFor(before, after)) + after);
+  if (RoomFor(before, after) < least_name) after = fmt::format(",{},", LetterOf(target.state));
+  return Sentence(before + NameWithin(target, RoomFor(before, after)) + after);
 }
 
 std::string Tll(std::string_view talker, const Target& target, int number, Utime time) {
   const auto before = fmt::format("{}TLL,{:02},{},", talker, number, PositionFields(target.position));
   const auto after = fmt::format(",{},{},", TimeOfDay(time), LetterOf(target.state));
-  return Sentence(before + NameWithin(target.name, RoomFor(before, after)) + after);
+  return Sentence(before + NameWithin(target, RoomFor(before, after)) + after);
 }
 
 int AlarmNumber(const Notice& notice) {

@@ -117,7 +117,7 @@ N2kMessage TargetMessage(const OwnShip& own, const Target& target, int number) {
   payload.Signed(target.cpa_m, 1e-2, 4);
   payload.Signed(target.tcpa_s, 1e-3, 4);
   payload.Unsigned(ToSeconds(since_midnight), 1e-4, 4);
-  payload.Text(std::string_view(target.name).substr(0, kMostNameBytes));
+  payload.Text(std::string_view(AsciiNameOf(target, kMostNameBytes)).substr(0, kMostNameBytes));
   payload.U8(0xFC);  // no reference target, reserved bits set
   return {.pgn = 128520, .priority = 2, .is_fast_packet = true, .payload = payload.Take()};
 }

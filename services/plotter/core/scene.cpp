@@ -4,6 +4,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/geodesy.hpp"
+#include "common/core/printable.hpp"
 
 namespace lookout::plotter {
 
@@ -17,6 +18,11 @@ bool ComesNear(const Target& target) { return target.cpa_probability >= kLikely;
 LocalFrame FrameAt(const Position& position) { return LocalFrame({position.latitude_deg, position.longitude_deg, 0.0}); }
 
 }  // namespace
+
+const std::string& AsciiNameOf(const Target& target, std::size_t max_bytes) {
+  const auto& given = target.given_name;
+  return !given.empty() && given.size() <= max_bytes && given == Printable(given) ? given : target.name;
+}
 
 bool IsDangerous(const Target& target) { return target.level != Level::kNone || ComesNear(target); }
 

@@ -1,6 +1,7 @@
 // The scene of the plotter: the own ship, targets, alerts.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -40,8 +41,9 @@ enum class Sound { kQuiet, kSounds, kSilenced };
 
 /// One track, as it is to be shown.
 struct Target {
-  std::int64_t id = 0;  // of its track
-  std::string name;     // "boat 17": printable ASCII
+  std::int64_t id = 0;          // of its track
+  std::string name;             // "boat 17": printable ASCII
+  std::string given_name = {};  // by people, UTF-8; "": none
   TargetState state = TargetState::kTracking;
   Utime first;  // seen
   Position position;
@@ -78,6 +80,9 @@ struct Notice {
 /// Whether one target is shown before another: those with an alert, the graver first; then those that come too near, the sooner first; then the
 /// nearer; then the lower id.
 bool IsMoreDangerous(const Target& one, const Target& other);
+
+/// The given name where all of it is printable ASCII and it has at most so many bytes, else the name: a part of a name is another's.
+const std::string& AsciiNameOf(const Target& target, std::size_t max_bytes);
 
 /// Whether it has an alert, or is likely to pass below the limit.
 bool IsDangerous(const Target& target);

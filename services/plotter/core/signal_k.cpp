@@ -157,7 +157,7 @@ std::string OwnShipDelta(const OwnShip& own) {
 
 std::string TargetDelta(std::string_view boat, const Target& target, Utime time) {
   Delta delta(ContextOf(boat, target.id), time);
-  delta.Add("", {{"name", target.name}});
+  delta.Add("", {{"name", target.given_name.empty() ? target.name : PrintableLines(target.given_name)}});
   delta.Add("navigation.position", PositionJson(target.position));
   delta.Add("navigation.courseOverGroundTrue", Angle(target.course_rad));
   delta.Add("navigation.speedOverGround", Number(target.speed_mps, 1e3));

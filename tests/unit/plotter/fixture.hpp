@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/plotter/n2k_output.hpp"
@@ -70,6 +71,7 @@ class ServiceFixture : public ::testing::Test {
   std::int64_t scan_seq_ = 0;
   std::vector<track_t> tracks_{};
   std::vector<alert_t> alerts_{};
+  std::vector<std::pair<std::int64_t, std::string>> names_{};
   std::int64_t sounding_alert_id_ = 0;
   std::int64_t silenced_until_us_ = 0;
   std::int64_t begin_us_ = kStartUs;
@@ -150,6 +152,11 @@ class ServiceFixture : public ::testing::Test {
     support::Fill(message, alerts_);
     message.sounding_alert_id = sounding_alert_id_;
     message.silenced_until_utime_us = silenced_until_us_;
+    for (const auto& [id, name] : names_) {
+      message.named_track_id.push_back(id);
+      message.given_name.push_back(name);
+    }
+    message.num_names = static_cast<std::int32_t>(message.given_name.size());
     support::Send(*bus_, bus::kAlerts, message);
   }
 

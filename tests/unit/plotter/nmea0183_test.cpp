@@ -116,6 +116,17 @@ TEST(PlotterNmea, NamesATargetByItsNumberWhereThereIsNoRoom) {
   EXPECT_NE(Ttm("RA", MakeOwnShip(), target, 5, Unit::kKilometres).find(",K,123456,T,"), std::string::npos);
 }
 
+TEST(PlotterNmea, CallsATargetAsPeopleDo) {
+  auto target = MakeTarget();
+  target.given_name = "Kiosk pier";
+  EXPECT_NE(Ttm("RA", MakeOwnShip(), target, 5, Unit::kKilometres).find(",K,Kiosk pier,T,"), std::string::npos);
+  EXPECT_NE(Tll("RA", target, 5, test::kTime).find(",Kiosk pier,"), std::string::npos);
+  target.given_name = "Kj\xc3\xb8kken";  // no ASCII
+  EXPECT_NE(Ttm("RA", MakeOwnShip(), target, 5, Unit::kKilometres).find(",K,boat 17,T,"), std::string::npos);
+  target.given_name = "The buoy of Anna at the western channel";  // no room for all of it
+  EXPECT_NE(Ttm("RA", MakeOwnShip(), target, 5, Unit::kKilometres).find(",K,boat 17,T,"), std::string::npos);
+}
+
 // Cases written by hand after IEC 61162-1.
 TEST(PlotterNmea, SaysAnAlertAsAlr) {
   auto notice = MakeNotice();

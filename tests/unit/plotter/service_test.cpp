@@ -365,6 +365,33 @@ TEST_F(PlotterService, RefusesWhatCannotBe) {
   EXPECT_EQ(Count("alerts_refused_id"), 2);
 }
 
+TEST_F(PlotterService, CallsTargetsAsPeopleDo) {
+  tracks_ = {MakeTrack(17)};
+  names_ = {{17, "Kiosk pier"}};
+  Run(300'000);
+  Clear();
+  Run(3'000'000);
+  EXPECT_FALSE(nmea_->With(",Kiosk pier,T,").empty());
+  EXPECT_FALSE(signal_k_->With("Kiosk pier").empty());
+  // Another process of the tracker: its track 17 is of another thing.
+  names_.clear();
+  begin_us_ += 1'000'000;
+  Clear();
+  Run(3'000'000);
+  EXPECT_TRUE(nmea_->With("Kiosk").empty());
+}
+
+TEST_F(PlotterService, TellsAlertsAlsoWhereANameIsNone) {
+  tracks_ = {MakeTrack(17)};
+  names_ = {{17, "\x1b[31m"}};
+  alerts_ = {MakeAlert(3)};
+  Run(300'000);
+  EXPECT_GT(Count("names_refused"), 0);
+  EXPECT_FALSE(nmea_->With("ALR").empty());
+  EXPECT_FALSE(nmea_->With(",boat 17,T,").empty());
+  EXPECT_TRUE(nmea_->With("\x1b").empty());
+}
+
 TEST_F(PlotterService, WaitsForAllPartsOfTracks) {
   tracks_ = {MakeTrack(17)};
   Run(300'000);

@@ -57,6 +57,12 @@ TEST(PlotterSignalK, SaysATarget) {
   EXPECT_LT(text.size(), 2048U);  // signalk-server throws longer lines away
 }
 
+TEST(PlotterSignalK, CallsATargetAsPeopleDo) {
+  auto target = MakeTarget();
+  target.given_name = "Kj\xc3\xb8kken";
+  EXPECT_EQ(Values(TargetDelta("gannet", target, test::kTime))[""]["name"], "Kj\xc3\xb8kken");
+}
+
 TEST(PlotterSignalK, EndsATargetByNulls) {
   const auto text = TargetEndDelta("gannet", 17, test::kTime);
   EXPECT_EQ(json::parse(text)["context"], "targets.lidar:gannet-17");
