@@ -378,7 +378,7 @@ TEST_F(PlotterService, CallsTargetsAsPeopleDo) {
   begin_us_ += 1'000'000;
   Clear();
   Run(3'000'000);
-  EXPECT_TRUE(nmea_->With("Kiosk").empty());
+  EXPECT_TRUE(nmea_->With(",Kiosk pier,T,").empty());
 }
 
 TEST_F(PlotterService, TellsAlertsAlsoWhereANameIsNone) {
