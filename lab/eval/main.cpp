@@ -39,6 +39,7 @@ struct Options {
   std::filesystem::path list_file;
   std::optional<double> berth_seconds;
   std::filesystem::path kept_folder;
+  bool are_figures_long = false;
   std::size_t num_jobs = 1;
 };
 
@@ -116,6 +117,7 @@ Options ParseOptions(int argc, char** argv) {
       ->needs(alerts);
   app.add_option("--keep", options.kept_folder, "with --alerts: keep there what the tracker reads in simulated runs, and use it the next time")
       ->needs(alerts);
+  app.add_flag("--long", options.are_figures_long, "with --alerts and --blocks: fill the blocks of long runs (long_alerts_...)")->needs(alerts);
   app.add_option("--jobs", options.num_jobs, "with --alerts: runs at once; the figures are the same")
       ->check(CLI::Range(1, 256))
       ->needs(alerts)
@@ -174,7 +176,7 @@ int main(int argc, char** argv) try {
   const auto& comparison = options.comparison;
   if (options.has_alerts) {
     return eval::EvaluateAlerts({RunsOf(comparison), options.berth_seconds.value_or(comparison.seconds), options.captures, options.num_jobs,
-                                 options.kept_folder, options.list_file});
+                                 options.kept_folder, options.list_file, options.are_figures_long});
   }
   if (options.has_tracks) {
     return eval::EvaluateTracks(

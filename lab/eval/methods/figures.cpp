@@ -25,7 +25,7 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 30> kFigureNames{"main",
+constexpr std::array<std::string_view, 34> kFigureNames{"main",
                                                         "times",
                                                         "miou",
                                                         "false",
@@ -54,7 +54,11 @@ constexpr std::array<std::string_view, 30> kFigureNames{"main",
                                                         "alerts_causes",
                                                         "alerts_dangers",
                                                         "alerts_standing",
-                                                        "alerts_left_out"};
+                                                        "alerts_left_out",
+                                                        "long_alerts_targets",
+                                                        "long_alerts_verdicts",
+                                                        "long_alerts_causes",
+                                                        "long_alerts_dangers"};
 
 // In headings of columns a world stands before its figure.
 std::string HeadingOf(const Results& world, const std::string& text) { return world.world.empty() ? text : world.world + ": " + text; }

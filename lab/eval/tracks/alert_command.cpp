@@ -264,7 +264,12 @@ int EvaluateAlerts(const AlertOptions& options) {
   std::cerr << fmt::format("lookout-eval: {:.2f} h of runs in {:.0f} s: {:.1f} times real time, {} at once\n", seconds / 3600.0, took.count(),
                            seconds / took.count(), options.num_jobs);
   files.Commit(tables);
-  if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(tables, ScopeOf(options, has_captures)));
+  if (options.block_files.empty()) return EXIT_SUCCESS;
+  auto figures = FiguresOf(tables, ScopeOf(options, has_captures));
+  if (options.are_figures_long) {
+    for (auto& figure : figures) figure.name = "long_" + figure.name;
+  }
+  FillBlocksOf(options.block_files, figures);
   return EXIT_SUCCESS;
 }
 

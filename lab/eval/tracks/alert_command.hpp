@@ -16,6 +16,7 @@ struct AlertOptions : RunOptions {
   std::size_t num_jobs = 1;                     // runs at once
   std::filesystem::path kept_folder;            // keeps the tracker's inputs, for use again (KeptRun); empty = none
   std::filesystem::path list_file;              // each alert and danger, a row of CSV; empty = none
+  bool are_figures_long = false;                // blocks of long_alerts_... in place of alerts_...
 };
 
 /// Runs all services on each scene and seed, and on each capture, and prints the tables to stdout, progress to stderr. @return exit code

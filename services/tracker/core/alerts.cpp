@@ -24,6 +24,8 @@ constexpr std::size_t kWatch = static_cast<std::size_t>(AlertCause::kWatch) - 1;
 // An alert without a track is shown for so long after its thing was seen last.
 constexpr std::chrono::milliseconds kShownFor{500};
 constexpr double kPassedS = 1.0;
+// What is far ahead is now on the boat's way and now beside it, as she yaws in the waves: of the time that was left it stands this share longer.
+constexpr double kWaversShare = 0.3;
 
 // Unknown values come last.
 double LastIfUnknown(double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; }
@@ -157,13 +159,27 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
   const bool has_passed =
       entry.HasAlert() && IsAbaft(entry.alert->bearing_rad) && evidence[kApproach] != nullptr && evidence[kApproach]->tcpa_s == 0.0;
   const double clear_s = has_passed ? std::min(params_.clear_s, kPassedS) : params_.clear_s;
+  // What is about to be a danger by another cause does not end first.
+  const auto holds_otherwise = [this, &entry, &evidence](std::size_t cause) {
+    bool is_last = true;
+    bool is_otherwise = false;
+    for (std::size_t i = 0; i < evidence.size(); ++i) {
+      if (i == cause) continue;
+      is_last = is_last && !entry.causes[i].is_on;
+      is_otherwise = is_otherwise || (evidence[i] != nullptr && evidence[i]->probability >= params_.clear_probability);
+    }
+    return is_last && is_otherwise;
+  };
   bool says_warning = false;
   bool says_no_warning = true;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     const double probability = evidence[i] == nullptr ? 0.0 : evidence[i]->probability;
     const bool says_on = probability >= params_.raise_probability;
-    const bool says_off = !(probability >= params_.clear_probability) && !may_be_there;
-    entry.causes[i].Update(time, is_whole, says_on, says_off, clear_s, evidence[i] != nullptr && evidence[i]->is_known);
+    const bool says_off = !(probability >= params_.clear_probability) && !may_be_there && !holds_otherwise(i);
+    if (i == kApproach && says_on) entry.likely_tcpa_s = evidence[i]->tcpa_s;
+    const bool may_waver = i == kApproach && evidence[i] != nullptr && !has_passed;
+    const double cause_clear_s = may_waver ? std::clamp(kWaversShare * entry.likely_tcpa_s, clear_s, std::max(clear_s, kSameS)) : clear_s;
+    entry.causes[i].Update(time, is_whole, says_on, says_off, cause_clear_s, evidence[i] != nullptr && evidence[i]->is_known);
     const bool is_grave = evidence[i] != nullptr && evidence[i]->is_grave;
     says_warning = says_warning || (says_on && is_grave);
     says_no_warning = says_no_warning && !(is_grave && probability >= params_.clear_probability);

@@ -182,6 +182,7 @@ class Alerts {
     std::optional<Lost> lost;
     // Of its track, when that was known last.
     bool was_likely = true;
+    double likely_tcpa_s = 0.0;  // when it was last likely to come near
     Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
     Utime placed;  // when its place was told last
     // Of land and of kUnnamed alone. The scans of the last second that showed any: an acknowledgement is of places that a person can have seen.

@@ -27,6 +27,9 @@ constexpr double kStaysS = 0.8;
 constexpr std::chrono::milliseconds kSeenNow{300};
 // A thing that comes up so near to a known one is a part of it until it is a track of its own.
 constexpr double kPartM = 2.0;
+// What has an alert and is so near beyond the zone keeps it.
+constexpr double kEdgeShare = 1.2;
+constexpr double kAtEdge = 0.3;
 
 std::vector<Eigen::Vector2d> InVessel(std::span<const Eigen::Vector2d> corners_map_m, const Pose& own) {
   const auto [sine, cosine] = SinCosOf(own.heading_rad);
@@ -212,11 +215,15 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
   std::optional<KnownThings> known;
   ShoreBearings shore(params);
   const auto add = [&](std::int64_t thing, const std::optional<NearestPoint>& point, const Track* track) {
-    if (!point || point->range_m > params.range_m) return;
+    if (!point || point->range_m > kEdgeShare * params.range_m) return;
+    if (point->range_m > params.range_m) {
+      if (track != nullptr && IsConfirmed(*track)) in_zone[thing].Add(*point, track, true, kAtEdge);
+      return;
+    }
     const bool is_certain =
         params.takes_tentative || thing == kLandTrack || (track != nullptr && (IsConfirmed(*track) || Proof::Lasts(*track, time)));
     const bool is_confirmed = track != nullptr && IsConfirmed(*track);
-    if (own && !is_certain && !is_confirmed) {
+    if (own && !is_confirmed && thing != kLandTrack && !params.takes_tentative) {
       if (!known) known.emplace(picture, outlines, things, *own);
       if (const auto* of = known->Find(*point)) {
         in_zone[of->thing].Add(*point, of->track, true, 1.0);
@@ -274,7 +281,9 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
   dangers.reserve(in_zone.size());
   for (const auto& [thing, found] : in_zone) {
     const bool has_places = IsOfPlaces(thing) || things.IsGroup(thing);
-    dangers.push_back(DangerOf(thing, found, thing == kLandTrack ? shore.Places() : has_places ? found.things : std::vector<NearestPoint>{}, own));
+    auto places = thing == kLandTrack ? shore.Places() : has_places ? found.things : std::vector<NearestPoint>{};
+    if (places.empty() && has_places) places = found.things;
+    dangers.push_back(DangerOf(thing, found, places, own));
   }
   return dangers;
 }
@@ -307,7 +316,8 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
   std::map<std::int64_t, std::vector<DangerPlace>> places_of;  // of things of several tracks: all that are likely to come too near
   for (const auto& track : picture.tracks) {
     const bool lasts = proof != nullptr && Proof::Lasts(track, time);
-    if (!IsConfirmed(track) && !lasts) continue;
+    // Crests run: what runs and is none will be confirmed.
+    if (!IsConfirmed(track) && !(lasts && track.velocity_mps.isZero(0.0))) continue;
     if (is_own_still && track.velocity_mps.isZero(0.0)) continue;
     const auto place = PlaceOf(track, *own);
     Danger danger{.cause = AlertCause::kClosestApproach,
@@ -319,8 +329,9 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
                   .seen = track.seen,
                   .place_map_m = place.position_map_m};
     add_approach(track.approach, params.limit_m, danger);
-    const auto doubt = [&track, time](Danger& of) {
-      if (!of.is_grave || time - track.seen > kSeenNow) of.probability = 0.0;
+    // A boat that lies still gains nothing by being told sooner.
+    const auto doubt = [&track, time, is_own_still](Danger& of) {
+      if (!of.is_grave || is_own_still || time - track.seen > kSeenNow) of.probability = 0.0;
       of.is_grave = false;
       of.is_just_seen = true;
     };

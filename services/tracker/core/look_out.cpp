@@ -42,7 +42,7 @@ void LookOut::Rename(const Picture& picture, Utime time) {
   }
   if (picture.is_waterline_told) shore_m_ = picture.waterline_m;
   proof_.Update(picture.tracks, shore_m_);
-  things_.Update(time, picture.tracks, shore_m_, &proof_);
+  things_.Update(time, picture.tracks, shore_m_, &proof_, is_own_still_);
   for (const auto& [from, to] : things_.merged()) alerts_.Rename(from, to, time);
   names_.Follow(picture.tracks, things_);
   Name(picture, time);
@@ -61,9 +61,9 @@ void LookOut::Name(const Picture& picture, Utime time) {
 
 const std::vector<Alert>& LookOut::Update(Utime time, bool is_whole, const Picture& picture, std::span<const VesselOutline> outlines,
                                           const std::optional<Pose>& own, const std::optional<Danger>& unseen) {
-  const bool is_own_still = still_.Update(time, own ? Eigen::Vector2d(own->velocity_map_mps) : Eigen::Vector2d::Constant(kNan));
+  is_own_still_ = still_.Update(time, own ? Eigen::Vector2d(own->velocity_map_mps) : Eigen::Vector2d::Constant(kNan));
   auto dangers = GuardZoneDangers(limits_.guard_zone, picture, outlines, own, things_, &newcomers_, time);
-  std::ranges::move(ClosestApproachDangers({limits_.cpa_limit_m, params_.ability}, picture, own, is_own_still, things_, &proof_, time),
+  std::ranges::move(ClosestApproachDangers({limits_.cpa_limit_m, params_.ability}, picture, own, is_own_still_, things_, &proof_, time),
                     std::back_inserter(dangers));
   if (unseen) dangers.push_back(*unseen);
   told_ = alerts_.Update(time, is_whole, dangers, {own, std::span(picture.tracks)});

@@ -80,6 +80,7 @@ class LookOut {
   Proof proof_;
   Newcomers newcomers_;
   StillWatch still_;
+  bool is_own_still_ = false;  // after the last scan
   Alerts alerts_;
   Names names_;
   std::vector<Order> namings_;  // with the next scan

@@ -59,6 +59,31 @@ TEST_F(AlertsTest, ClearBelowTheLowerLimitForThreeSecondsAndAreToldOnce) {
   EXPECT_TRUE(Scan({}).empty());
 }
 
+// Its course is on the bow now and beside it now, as the boat yaws.
+TEST_F(AlertsTest, StandLongerOfWhatIsFarAhead) {
+  Scans(3, {Cpa(7, 0.9, 25.0), Cpa(8, 0.9, 16.0)});
+  Scans(52, {Cpa(7, 0.1, 24.0), Cpa(8, 0.1, 15.0)});
+  EXPECT_EQ(Only().thing, 7);
+  Scans(20, {Cpa(7, 0.1, 20.0)});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+  Scans(5, {Cpa(7, 0.1, 19.0)});
+  EXPECT_TRUE(alerts_.alerts().empty());
+}
+
+TEST_F(AlertsTest, DoNotEndBeforeTheThingEntersTheZone) {
+  Scans(3, {Cpa(7, 0.9, 5.0)});
+  auto at_edge = Zone(7, 11.0);
+  at_edge.probability = 0.3;
+  Scans(100, {Cpa(7, 0.1, 5.0), at_edge});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+  const auto changed = Only().changed;
+  Scans(5, {Cpa(7, 0.1, 5.0), Zone(7)});
+  EXPECT_EQ(Only().changed, changed);
+  EXPECT_TRUE(Only().is_in_zone);
+  Scans(31, {});
+  EXPECT_TRUE(Only().state == AlertState::kCleared || Only().state == AlertState::kRectified);
+}
+
 TEST_F(AlertsTest, BeginClearingAnewWheneverTheyHold) {
   Scans(3, {Cpa(7, 0.9)});
   for (int i = 0; i < 5; ++i) {

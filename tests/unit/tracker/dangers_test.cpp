@@ -55,7 +55,7 @@ constexpr GuardZoneParams kZone{.range_m = 10.0, .bearing = {DegToRad(300.0), De
 
 TEST(GuardZoneDangers, AreNearAndInTheSector) {
   Picture picture;
-  picture.tracks = {At(1, {0.0, 6.0}), At(2, {0.0, 12.0}), At(3, {0.0, -6.0}), At(4, {6.0, 4.5})};
+  picture.tracks = {At(1, {0.0, 6.0}), At(2, {0.0, 13.0}), At(3, {0.0, -6.0}), At(4, {6.0, 4.5})};
   const auto dangers = GuardZoneDangers(kZone, picture, {}, Own());
   ASSERT_EQ(dangers.size(), 2U);
   EXPECT_EQ(dangers[0].thing, 1);
@@ -64,6 +64,18 @@ TEST(GuardZoneDangers, AreNearAndInTheSector) {
   EXPECT_FALSE(dangers[0].is_grave) << "what is in the zone is worth a look";
   EXPECT_EQ(dangers[0].probability, 1.0);
   EXPECT_EQ(dangers[1].thing, 4);
+}
+
+// 0.5 m and less beyond the edge, now in and now out: below what raises an alert, above what ends one.
+TEST(GuardZoneDangers, AtTheEdgeOfTheZoneEndNoAlert) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 11.0})};
+  const auto dangers = GuardZoneDangers(kZone, picture, {}, Own());
+  ASSERT_EQ(dangers.size(), 1U);
+  EXPECT_LT(dangers[0].probability, AlertParams{}.raise_probability);
+  EXPECT_GT(dangers[0].probability, AlertParams{}.clear_probability);
+  picture.tracks[0].status = TrackStatus::kTentative;
+  EXPECT_TRUE(GuardZoneDangers(kZone, picture, {}, Own()).empty());
 }
 
 TEST(GuardZoneDangers, TurnWithTheBoat) {
@@ -288,6 +300,41 @@ TEST(ClosestApproachDangers, OfACourseThatIsNotProvenAreToldNoLaterThanIfItStood
   EXPECT_EQ(swinging.probability, standing.probability);
   EXPECT_TRUE(swinging.is_grave);
   EXPECT_EQ(swinging.time_left_s, standing.time_left_s);
+}
+
+// One that is tied up can do nothing about it in the second that it takes to know.
+TEST(ClosestApproachDangers, OfACourseThatIsNotProvenAreNoneForABoatThatLiesStill) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 20.0})};
+  auto& track = picture.tracks[0];
+  track.velocity_mps = {0.0, -4.0};
+  track.approach = {.distance_m = 18.0, .cpa_m = 0.0, .tcpa_s = 4.5, .probability = 0.9};
+  Proof proof;
+  const auto told = [&](int scan, bool is_own_still) {
+    track.seen = kStart + scan * std::chrono::milliseconds(100);
+    track.first = kStart - std::chrono::seconds(5);
+    track.position_m = {0.0, 20.0 - 0.4 * scan};
+    proof.Update(picture.tracks);
+    return ClosestApproachDangers(kApproach, picture, Own(), is_own_still, {}, &proof, track.seen).at(0).probability;
+  };
+  EXPECT_EQ(told(0, true), 0.0);
+  EXPECT_GT(told(1, false), 0.5) << "under way a second is much";
+  for (int scan = 2; scan < 10; ++scan) told(scan, true);
+  EXPECT_GT(told(11, true), 0.5) << "it came where its course led";
+}
+
+TEST(ClosestApproachDangers, OfATentativeTrackAreNoneWhereItRuns) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 20.0}, TrackStatus::kTentative)};
+  auto& track = picture.tracks[0];
+  track.id = -5;
+  track.existence_probability = 0.8;
+  track.first = kStart - std::chrono::seconds(4);
+  track.seen = kStart;
+  const Proof proof;
+  EXPECT_EQ(ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).size(), 1U) << "a buoy in waves";
+  track.velocity_mps = {0.0, -3.0};
+  EXPECT_TRUE(ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).empty()) << "a crest";
 }
 
 TEST(StillWatch, SeesADriftAndADepartureButNoSway) {

@@ -28,9 +28,9 @@ Track Standing(std::int64_t id, double east_m, double length_m, double north_m =
 
 class ThingsTest : public ::testing::Test {
  protected:
-  void Scans(int num, const std::vector<Track>& tracks, const std::vector<Eigen::Vector2d>& shore_m = {}) {
+  void Scans(int num, const std::vector<Track>& tracks, const std::vector<Eigen::Vector2d>& shore_m = {}, bool is_own_still = false) {
     for (int i = 0; i < num; ++i) {
-      things_.Update(time_ += std::chrono::milliseconds(100), tracks, shore_m);
+      things_.Update(time_ += std::chrono::milliseconds(100), tracks, shore_m, nullptr, is_own_still);
       merged_.insert(merged_.end(), things_.merged().begin(), things_.merged().end());
     }
   }
@@ -113,6 +113,46 @@ TEST_F(ThingsTest, OfBuoysSideBySideAreTheirOwn) {
   Scans(25, {Standing(1, 0.0, 0.6), Standing(2, 2.0, 0.6)});
   EXPECT_EQ(things_.ThingOf(1), 1);
   EXPECT_EQ(things_.ThingOf(2), 2);
+}
+
+TEST_F(ThingsTest, OfPiecesAreOneBeforeAnAlertCanComeUp) {
+  Scans(2, {Standing(3, 0.0, 10.0), Standing(5, 12.0, 10.0)});
+  EXPECT_EQ(things_.ThingOf(5), 3);
+}
+
+TEST_F(ThingsTest, OfWhatComesUpBesideAKnownOneAreThat) {
+  const auto known = Standing(1, 0.0, 2.0);
+  auto piece = Standing(2, 3.0, 1.0);  // 1.5 m off
+  auto other = Standing(4, 0.0, 1.0, 4.5);
+  piece.first = other.first = time_;
+  Scans(5, {known, piece, other});
+  EXPECT_EQ(things_.ThingOf(2), 1);
+  EXPECT_EQ(things_.ThingOf(4), 4) << "3.5 m off";
+  // As the run begins nobody knows which was there before.
+  auto first = known;
+  first.first = time_;
+  things_.Clear();
+  Scans(5, {first, piece});
+  EXPECT_EQ(things_.ThingOf(2), 2);
+}
+
+TEST_F(ThingsTest, OfAConfirmedOneKeepItsNameBesideATentativeOne) {
+  auto tentative = Standing(-7, 3.0, 1.0);
+  tentative.status = TrackStatus::kTentative;
+  tentative.existence_probability = 0.7;
+  Scans(5, {tentative, Standing(2, 0.0, 2.0)});
+  EXPECT_EQ(things_.ThingOf(-7), 2);
+  EXPECT_EQ(things_.ThingOf(2), 2);
+  tentative.existence_probability = 0.5;
+  Scans(1, {tentative, Standing(2, 0.0, 2.0)});
+  EXPECT_EQ(things_.ThingOf(-7), -7) << "it may be a crest";
+}
+
+TEST_F(ThingsTest, AroundABoatThatLiesStillAreItsBerth) {
+  const std::vector<Track> buoys{Standing(1, 0.0, 0.6), Standing(2, 3.0, 0.6), Standing(3, 8.0, 0.6)};
+  Scans(5, buoys, {}, true);
+  EXPECT_EQ(things_.ThingOf(2), 1);
+  EXPECT_EQ(things_.ThingOf(3), 3);
 }
 
 TEST_F(ThingsTest, KeepTheirNameWhenTracksBecomeOne) {
