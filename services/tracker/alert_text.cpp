@@ -110,7 +110,7 @@ std::string TextOf(const Alert& alert) {
   const auto where = BearingText(alert.bearing_rad);
   if (alert.sight == AlertSight::kLost) return fmt::format("{} is not seen any more: last {:.1f} m from here{}", who, alert.distance_m, where);
   std::string text;
-  if (alert.is_in_zone || !alert.comes_near) {
+  if ((alert.is_in_zone && !alert.tells_way) || !alert.comes_near) {
     text = fmt::format("{} in the guard zone: {:.1f} m{}", who, alert.distance_m, where);
     if (alert.comes_near && alert.tcpa_s > 0.0) text += fmt::format("; passes at {:.0f} m in {:.0f} s", alert.cpa_m, alert.tcpa_s);
   } else if (alert.tcpa_s > 0.0) {

@@ -218,14 +218,27 @@ void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidenc
   if (!is_lost && alert.sight == AlertSight::kLost) alert.sight = AlertSight::kSeen;
 }
 
+// Which danger of a thing is told: what is likely; then that in the zone, as it is the nearest, unless what lies on the boat's way is elsewhere.
+const Danger* Alerts::ToldOf(const Evidence& evidence) const {
+  const Danger* zone = evidence[kZone];
+  const Danger* approach = evidence[kApproach];
+  const auto is_likely = [this](const Danger* danger) { return danger != nullptr && danger->probability >= params_.raise_probability; };
+  const bool is_on_way = is_likely(approach) && !std::isnan(approach->time_left_s);
+  const bool is_elsewhere = zone != nullptr && is_on_way && std::fabs(WrapToPi(approach->bearing_rad - zone->bearing_rad)) > kKeptSideRad;
+  if (is_likely(zone) && !is_elsewhere) return zone;
+  if (is_likely(approach)) return approach;
+  return zone != nullptr ? zone : approach != nullptr ? approach : evidence[kWatch];
+}
+
 // An alert that holds, in the words of this scan.
 void Alerts::Tell(Entry& entry, const Evidence& evidence, Utime time) const {
   auto& alert = *entry.alert;
   alert.is_in_zone = entry.causes[kZone].is_on;
   alert.comes_near = entry.causes[kApproach].is_on;
   alert.cause = entry.causes[kWatch].is_on ? AlertCause::kWatch : alert.comes_near ? AlertCause::kClosestApproach : AlertCause::kGuardZone;
-  const Danger* nearest = evidence[kZone] != nullptr ? evidence[kZone] : evidence[kApproach] != nullptr ? evidence[kApproach] : evidence[kWatch];
+  const Danger* nearest = ToldOf(evidence);
   if (nearest == nullptr) return;
+  alert.tells_way = nearest == evidence[kApproach];
   alert.nearest_track = nearest->nearest_track;
   alert.kind = nearest->kind;
   alert.distance_m = nearest->distance_m;

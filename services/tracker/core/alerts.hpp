@@ -31,6 +31,7 @@ struct Alert {
   AlertCause cause = AlertCause::kGuardZone;  // that weighs most
   bool is_in_zone = false;
   bool comes_near = false;
+  bool tells_way = false;  // the place is that on the boat's way, and not the nearest in the zone
   AlertLevel level = AlertLevel::kCaution;
   AlertState state = AlertState::kActive;
   std::int64_t thing = kLandTrack;
@@ -202,6 +203,7 @@ class Alerts {
 
   void Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole, const Evidence& evidence, const Surroundings& around);
   void Tell(Entry& entry, const Evidence& evidence, Utime time) const;
+  const Danger* ToldOf(const Evidence& evidence) const;
   void UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidence& evidence) const;
   static void LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidence& evidence, const Surroundings& around);
   static void TellPlaces(Entry& entry, std::int64_t thing, const Acknowledgement& acknowledgement);

@@ -208,7 +208,7 @@ class ShoreBearings {
 }  // namespace
 
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
-                                     const std::optional<Pose>& own, const Things& things, Newcomers* newcomers, Utime time) {
+                                     const std::optional<Pose>& own, const Things& things, Newcomers* newcomers, Utime time, const Proof* doubted) {
   if (params.range_m <= 0.0) return {};
   std::map<std::int64_t, InZone> in_zone;  // of each thing, land and things without a name
   std::vector<NearestPoint> unnamed;
@@ -216,7 +216,8 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
   ShoreBearings shore(params);
   const auto add = [&](std::int64_t thing, const std::optional<NearestPoint>& point, const Track* track) {
     if (!point || point->range_m > kEdgeShare * params.range_m) return;
-    if (point->range_m > params.range_m) {
+    const bool is_doubted = track != nullptr && doubted != nullptr && !doubted->IsProven(*track);
+    if (point->range_m > params.range_m || is_doubted) {
       if (track != nullptr && IsConfirmed(*track)) in_zone[thing].Add(*point, track, true, kAtEdge);
       return;
     }

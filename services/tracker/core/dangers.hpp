@@ -31,10 +31,14 @@ namespace lookout::tracker {
 /// A confirmed track that has been followed for a second, and whose outline by the tracker is in the zone, is known: no scan need say so twice. A
 /// thing that is no confirmed track yet is just seen: crests are sure in single scans, too. A tentative track counts where it is likely to be a
 /// thing, and an obstacle without a track where it has stayed for 0.8 s.
+/// Around a boat that lies still a moving track is most often a piece of something that stands: it waits until its course is proven.
+///
 /// @param own        placed, at the end of the scan
 /// @param newcomers  obstacles of the zone without a track in the scans before; nullptr: all count at once
+/// @param doubted    which courses are proven, where the own boat lies still; nullptr: all are
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
-                                     const std::optional<Pose>& own, const Things& things = {}, Newcomers* newcomers = nullptr, Utime time = {});
+                                     const std::optional<Pose>& own, const Things& things = {}, Newcomers* newcomers = nullptr, Utime time = {},
+                                     const Proof* doubted = nullptr);
 
 /// Whether the own boat lies still: its velocity over ground, averaged over some seconds, is below half a knot. So sway in the berth and the noise of
 /// the receiver are none, but a drift is.

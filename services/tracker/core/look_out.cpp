@@ -62,7 +62,7 @@ void LookOut::Name(const Picture& picture, Utime time) {
 const std::vector<Alert>& LookOut::Update(Utime time, bool is_whole, const Picture& picture, std::span<const VesselOutline> outlines,
                                           const std::optional<Pose>& own, const std::optional<Danger>& unseen) {
   is_own_still_ = still_.Update(time, own ? Eigen::Vector2d(own->velocity_map_mps) : Eigen::Vector2d::Constant(kNan));
-  auto dangers = GuardZoneDangers(limits_.guard_zone, picture, outlines, own, things_, &newcomers_, time);
+  auto dangers = GuardZoneDangers(limits_.guard_zone, picture, outlines, own, things_, &newcomers_, time, is_own_still_ ? &proof_ : nullptr);
   std::ranges::move(ClosestApproachDangers({limits_.cpa_limit_m, params_.ability}, picture, own, is_own_still_, things_, &proof_, time),
                     std::back_inserter(dangers));
   if (unseen) dangers.push_back(*unseen);

@@ -59,6 +59,27 @@ TEST_F(AlertsTest, AreOneForAThingInTheZoneAndOnItsWay) {
 }
 
 // Now this track, now that one, now none: something is in the zone in 3 of 5 scans.
+// A shore abeam in the zone, and the same shore dead ahead.
+TEST_F(AlertsTest, TellWhatLiesOnTheWayWhereItIsElsewhere) {
+  auto beside = Zone(kLandTrack, 8.0);
+  beside.is_grave = false;
+  beside.bearing_rad = DegToRad(60.0);
+  auto ahead = Cpa(kLandTrack, 0.9, 20.0, 25.0);
+  ahead.bearing_rad = DegToRad(355.0);
+  ahead.time_left_s = 15.0;
+  Scans(3, {beside, ahead});
+  EXPECT_TRUE(Only().is_in_zone && Only().comes_near);
+  EXPECT_TRUE(Only().tells_way);
+  EXPECT_EQ(Only().distance_m, 25.0);
+  ahead.bearing_rad = DegToRad(50.0);
+  Scan({beside, ahead});
+  EXPECT_FALSE(Only().tells_way);
+  EXPECT_EQ(Only().distance_m, 8.0) << "the nearest of the same place";
+  beside.probability = 0.3;
+  Scan({beside, ahead});
+  EXPECT_EQ(Only().distance_m, 25.0) << "that is beyond the edge of the zone";
+}
+
 TEST_F(AlertsTest, ComeUpForTheZoneWhateverItsThingsAreCalled) {
   Scan({Zone(7)});
   Scan({Zone(kUnnamed)});

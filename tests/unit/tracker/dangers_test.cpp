@@ -78,6 +78,21 @@ TEST(GuardZoneDangers, AtTheEdgeOfTheZoneEndNoAlert) {
   EXPECT_TRUE(GuardZoneDangers(kZone, picture, {}, Own()).empty());
 }
 
+// One end of a pontoon, then the other: beside a boat that is tied up to it.
+TEST(GuardZoneDangers, OfACourseThatIsNotProvenEndNoAlertAndRaiseNoneWhereItIsDoubted) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 8.0})};
+  picture.tracks[0].velocity_mps = {3.0, 0.0};
+  const Proof proof;
+  EXPECT_EQ(GuardZoneDangers(kZone, picture, {}, Own()).at(0).probability, 1.0);
+  const auto doubted = GuardZoneDangers(kZone, picture, {}, Own(), {}, nullptr, {}, &proof);
+  ASSERT_EQ(doubted.size(), 1U);
+  EXPECT_LT(doubted[0].probability, AlertParams{}.raise_probability);
+  EXPECT_GT(doubted[0].probability, AlertParams{}.clear_probability);
+  picture.tracks[0].velocity_mps.setZero();
+  EXPECT_EQ(GuardZoneDangers(kZone, picture, {}, Own(), {}, nullptr, {}, &proof).at(0).probability, 1.0);
+}
+
 TEST(GuardZoneDangers, TurnWithTheBoat) {
   Picture picture;
   picture.tracks = {At(1, {6.0, 0.0})};  // to the east

@@ -351,6 +351,9 @@ TEST(AlertText, SaysWhoHowNearAndFromWhere) {
   EXPECT_EQ(TextOf(alert), "boat 17: closest approach 3 m in 21 s, 40 deg to starboard");
   alert.is_in_zone = true;
   EXPECT_EQ(TextOf(alert), "boat 17 in the guard zone: 7.3 m, 40 deg to starboard; passes at 3 m in 21 s");
+  alert.tells_way = true;
+  EXPECT_EQ(TextOf(alert), "boat 17: closest approach 3 m in 21 s, 40 deg to starboard");
+  alert.tells_way = false;
   alert.sight = AlertSight::kJustSeen;
   alert.comes_near = false;
   EXPECT_EQ(TextOf(alert), "boat 17 in the guard zone: 7.3 m, 40 deg to starboard (just seen)");
