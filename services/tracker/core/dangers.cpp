@@ -25,6 +25,8 @@ constexpr double kLikelyApproach = 0.5;
 // Drops of rain, spray and most crests are gone by then.
 constexpr double kStaysS = 0.8;
 constexpr std::chrono::milliseconds kSeenNow{300};
+// Crests run, and none lives so long.
+constexpr double kCrestS = 5.0;
 // A thing that comes up so near to a known one is a part of it until it is a track of its own.
 constexpr double kPartM = 2.0;
 // What has an alert and is so near beyond the zone keeps it.
@@ -317,8 +319,8 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
   std::map<std::int64_t, std::vector<DangerPlace>> places_of;  // of things of several tracks: all that are likely to come too near
   for (const auto& track : picture.tracks) {
     const bool lasts = proof != nullptr && Proof::Lasts(track, time);
-    // Crests run: what runs and is none will be confirmed.
-    if (!IsConfirmed(track) && !(lasts && track.velocity_mps.isZero(0.0))) continue;
+    const bool is_no_crest = track.velocity_mps.isZero(0.0) || ToSeconds(time - track.first) >= kCrestS;
+    if (!IsConfirmed(track) && !(lasts && is_no_crest)) continue;
     if (is_own_still && track.velocity_mps.isZero(0.0)) continue;
     const auto place = PlaceOf(track, *own);
     Danger danger{.cause = AlertCause::kClosestApproach,

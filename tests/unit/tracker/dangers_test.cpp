@@ -338,7 +338,7 @@ TEST(ClosestApproachDangers, OfACourseThatIsNotProvenAreNoneForABoatThatLiesStil
   EXPECT_GT(told(11, true), 0.5) << "it came where its course led";
 }
 
-TEST(ClosestApproachDangers, OfATentativeTrackAreNoneWhereItRuns) {
+TEST(ClosestApproachDangers, OfATentativeTrackThatRunsWaitUntilItIsNoCrest) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 20.0}, TrackStatus::kTentative)};
   auto& track = picture.tracks[0];
@@ -350,6 +350,8 @@ TEST(ClosestApproachDangers, OfATentativeTrackAreNoneWhereItRuns) {
   EXPECT_EQ(ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).size(), 1U) << "a buoy in waves";
   track.velocity_mps = {0.0, -3.0};
   EXPECT_TRUE(ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).empty()) << "a crest";
+  track.first = kStart - std::chrono::seconds(6);
+  EXPECT_EQ(ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).size(), 1U) << "no crest lives so long";
 }
 
 TEST(StillWatch, SeesADriftAndADepartureButNoSway) {
