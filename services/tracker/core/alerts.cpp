@@ -159,23 +159,14 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
   const bool has_passed =
       entry.HasAlert() && IsAbaft(entry.alert->bearing_rad) && evidence[kApproach] != nullptr && evidence[kApproach]->tcpa_s == 0.0;
   const double clear_s = has_passed ? std::min(params_.clear_s, kPassedS) : params_.clear_s;
-  // What is about to be a danger by another cause does not end first.
-  const auto holds_otherwise = [this, &entry, &evidence](std::size_t cause) {
-    bool is_last = true;
-    bool is_otherwise = false;
-    for (std::size_t i = 0; i < evidence.size(); ++i) {
-      if (i == cause) continue;
-      is_last = is_last && !entry.causes[i].is_on;
-      is_otherwise = is_otherwise || (evidence[i] != nullptr && evidence[i]->probability >= params_.clear_probability);
-    }
-    return is_last && is_otherwise;
-  };
+  // A thing at the edge of the zone, which is about to be in it, does not end first by its approach.
+  const bool is_at_zone = !entry.causes[kZone].is_on && evidence[kZone] != nullptr && evidence[kZone]->probability >= params_.clear_probability;
   bool says_warning = false;
   bool says_no_warning = true;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     const double probability = evidence[i] == nullptr ? 0.0 : evidence[i]->probability;
     const bool says_on = probability >= params_.raise_probability;
-    const bool says_off = !(probability >= params_.clear_probability) && !may_be_there && !holds_otherwise(i);
+    const bool says_off = !(probability >= params_.clear_probability) && !may_be_there && !(i == kApproach && is_at_zone);
     if (i == kApproach && says_on) entry.likely_tcpa_s = evidence[i]->tcpa_s;
     const bool may_waver = i == kApproach && evidence[i] != nullptr && !has_passed;
     const double cause_clear_s = may_waver ? std::clamp(kWaversShare * entry.likely_tcpa_s, clear_s, std::max(clear_s, kSameS)) : clear_s;
@@ -219,11 +210,11 @@ void Alerts::LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidenc
 }
 
 // Which danger of a thing is told: what is likely; then that in the zone, as it is the nearest, unless what lies on the boat's way is elsewhere.
-const Danger* Alerts::ToldOf(const Evidence& evidence) const {
+const Danger* Alerts::ToldOf(const Evidence& evidence, bool comes_near) const {
   const Danger* zone = evidence[kZone];
   const Danger* approach = evidence[kApproach];
   const auto is_likely = [this](const Danger* danger) { return danger != nullptr && danger->probability >= params_.raise_probability; };
-  const bool is_on_way = is_likely(approach) && !std::isnan(approach->time_left_s);
+  const bool is_on_way = comes_near && is_likely(approach) && !std::isnan(approach->time_left_s);
   const bool is_elsewhere = zone != nullptr && is_on_way && std::fabs(WrapToPi(approach->bearing_rad - zone->bearing_rad)) > kKeptSideRad;
   if (is_likely(zone) && !is_elsewhere) return zone;
   if (is_likely(approach)) return approach;
@@ -236,7 +227,7 @@ void Alerts::Tell(Entry& entry, const Evidence& evidence, Utime time) const {
   alert.is_in_zone = entry.causes[kZone].is_on;
   alert.comes_near = entry.causes[kApproach].is_on;
   alert.cause = entry.causes[kWatch].is_on ? AlertCause::kWatch : alert.comes_near ? AlertCause::kClosestApproach : AlertCause::kGuardZone;
-  const Danger* nearest = ToldOf(evidence);
+  const Danger* nearest = ToldOf(evidence, alert.comes_near);
   if (nearest == nullptr) return;
   alert.tells_way = nearest == evidence[kApproach];
   alert.nearest_track = nearest->nearest_track;

@@ -74,11 +74,15 @@ struct InZone {
   double probability = 0.0;
 
   void Add(const NearestPoint& point, const Track* of, bool is_certain_one, double with_probability) {
-    if (!nearest || point.range_m < nearest->range_m) {
+    // A place at the edge, or one that may be a piece, is told only where there is no other, and no acknowledgement covers it.
+    constexpr double kLikely = 0.5;
+    const bool is_likely = with_probability >= kLikely;
+    if (is_likely) things.push_back(point);
+    const bool was_likely = probability >= kLikely;
+    if (!nearest || (is_likely && !was_likely) || (is_likely == was_likely && point.range_m < nearest->range_m)) {
       nearest = point;
       track = of;
     }
-    things.push_back(point);
     is_certain = is_certain || is_certain_one;
     probability = std::max(probability, with_probability);
   }
@@ -218,7 +222,8 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
   ShoreBearings shore(params);
   const auto add = [&](std::int64_t thing, const std::optional<NearestPoint>& point, const Track* track) {
     if (!point || point->range_m > kEdgeShare * params.range_m) return;
-    const bool is_doubted = track != nullptr && doubted != nullptr && !doubted->IsProven(*track);
+    const bool moves = track != nullptr && !track->velocity_mps.isZero(0.0);
+    const bool is_doubted = moves && doubted != nullptr && !params.takes_tentative && doubted->MayBePiece(track->id);
     if (point->range_m > params.range_m || is_doubted) {
       if (track != nullptr && IsConfirmed(*track)) in_zone[thing].Add(*point, track, true, kAtEdge);
       return;
@@ -319,8 +324,8 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
   std::map<std::int64_t, std::vector<DangerPlace>> places_of;  // of things of several tracks: all that are likely to come too near
   for (const auto& track : picture.tracks) {
     const bool lasts = proof != nullptr && Proof::Lasts(track, time);
-    const bool is_no_crest = track.velocity_mps.isZero(0.0) || ToSeconds(time - track.first) >= kCrestS;
-    if (!IsConfirmed(track) && !(lasts && is_no_crest)) continue;
+    if (!IsConfirmed(track) && !lasts) continue;
+    const bool may_be_crest = lasts && !track.velocity_mps.isZero(0.0) && ToSeconds(time - track.first) < kCrestS;
     if (is_own_still && track.velocity_mps.isZero(0.0)) continue;
     const auto place = PlaceOf(track, *own);
     Danger danger{.cause = AlertCause::kClosestApproach,
@@ -332,17 +337,18 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
                   .seen = track.seen,
                   .place_map_m = place.position_map_m};
     add_approach(track.approach, params.limit_m, danger);
-    // A boat that lies still gains nothing by being told sooner.
-    const auto doubt = [&track, time, is_own_still](Danger& of) {
-      if (!of.is_grave || is_own_still || time - track.seen > kSeenNow) of.probability = 0.0;
+    // A boat in her berth gains nothing by being told of a piece of it.
+    const bool is_of_berth = is_own_still && proof != nullptr && proof->MayBePiece(track.id);
+    const auto doubt = [&track, time, is_of_berth](Danger& of) {
+      if (!of.is_grave || is_of_berth || time - track.seen > kSeenNow) of.probability = 0.0;
       of.is_grave = false;
       of.is_just_seen = true;
     };
-    const bool is_proven = proof == nullptr || proof->IsProven(track);
+    const bool is_proven = proof == nullptr || (proof->IsProven(track) && !may_be_crest);
     const bool is_young = proof != nullptr && Proof::IsYoung(track, time);
     if (is_young || !is_proven) doubt(danger);
     if (!is_proven) {
-      if (proof->MayBePiece(track.id)) danger.probability = 0.0;
+      if (may_be_crest || proof->MayBePiece(track.id)) danger.probability = 0.0;
       // Whatever its course is, it is told no later than if it stood.
       auto standing = danger;
       standing.is_just_seen = false;

@@ -31,11 +31,11 @@ namespace lookout::tracker {
 /// A confirmed track that has been followed for a second, and whose outline by the tracker is in the zone, is known: no scan need say so twice. A
 /// thing that is no confirmed track yet is just seen: crests are sure in single scans, too. A tentative track counts where it is likely to be a
 /// thing, and an obstacle without a track where it has stayed for 0.8 s.
-/// Around a boat that lies still a moving track is most often a piece of something that stands: it waits until its course is proven.
+/// Around a boat that lies still a moving track that began beside something that stands is most often a piece of it: it waits until it has left.
 ///
 /// @param own        placed, at the end of the scan
 /// @param newcomers  obstacles of the zone without a track in the scans before; nullptr: all count at once
-/// @param doubted    which courses are proven, where the own boat lies still; nullptr: all are
+/// @param doubted    which moving tracks may be pieces, where the own boat lies still; nullptr: none
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
                                      const std::optional<Pose>& own, const Things& things = {}, Newcomers* newcomers = nullptr, Utime time = {},
                                      const Proof* doubted = nullptr);

@@ -84,6 +84,16 @@ TEST_F(AlertsTest, DoNotEndBeforeTheThingEntersTheZone) {
   EXPECT_TRUE(Only().state == AlertState::kCleared || Only().state == AlertState::kRectified);
 }
 
+// A companion opens out and stays on a course that is now likely and now not: when it closes again it is told again.
+TEST_F(AlertsTest, OfTheZoneEndWhereTheThingIsFarOutsideAndMayComeNear) {
+  Scans(3, {Zone(7)});
+  ASSERT_TRUE(Acknowledge(Only()));
+  Scans(1, {Zone(7)});
+  Scans(200, {Cpa(7, 0.3, 25.0, 30.0)});
+  Scans(5, {Zone(7)});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+}
+
 TEST_F(AlertsTest, BeginClearingAnewWheneverTheyHold) {
   Scans(3, {Cpa(7, 0.9)});
   for (int i = 0; i < 5; ++i) {

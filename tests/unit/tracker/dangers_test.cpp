@@ -79,17 +79,38 @@ TEST(GuardZoneDangers, AtTheEdgeOfTheZoneEndNoAlert) {
 }
 
 // One end of a pontoon, then the other: beside a boat that is tied up to it.
-TEST(GuardZoneDangers, OfACourseThatIsNotProvenEndNoAlertAndRaiseNoneWhereItIsDoubted) {
+TEST(GuardZoneDangers, OfAPieceOfTheBerthEndNoAlertAndRaiseNone) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 8.0}), At(2, {1.5, 8.0})};
+  for (auto& track : picture.tracks) track.rectangle.center_m = track.position_m = track.outline_m[0];
+  picture.tracks[0].velocity_mps = {3.0, 0.0};
+  Proof proof;
+  proof.Update(picture.tracks);
+  const auto told = [&](const Proof* doubted, GuardZoneParams zone = kZone) {
+    return GuardZoneDangers(zone, picture, {}, Own(), {}, nullptr, {}, doubted).at(0);
+  };
+  EXPECT_EQ(told(nullptr).probability, 1.0);
+  const auto doubted = told(&proof);
+  EXPECT_LT(doubted.probability, AlertParams{}.raise_probability);
+  EXPECT_GT(doubted.probability, AlertParams{}.clear_probability);
+  EXPECT_TRUE(doubted.places.empty()) << "no acknowledgement covers it";
+  auto all = kZone;
+  all.takes_tentative = true;
+  EXPECT_EQ(told(&proof, all).probability, 1.0) << "such a zone tells all";
+  picture.tracks[0].velocity_mps.setZero();
+  proof.Update(picture.tracks);
+  EXPECT_EQ(told(&proof).probability, 1.0);
+}
+
+// A speedboat comes at a boat at anchor: nobody waits until it has shown that it moves.
+TEST(GuardZoneDangers, OfABoatInOpenWaterAreOfABoatThatLiesStillToo) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 8.0})};
-  picture.tracks[0].velocity_mps = {3.0, 0.0};
-  const Proof proof;
-  EXPECT_EQ(GuardZoneDangers(kZone, picture, {}, Own()).at(0).probability, 1.0);
-  const auto doubted = GuardZoneDangers(kZone, picture, {}, Own(), {}, nullptr, {}, &proof);
-  ASSERT_EQ(doubted.size(), 1U);
-  EXPECT_LT(doubted[0].probability, AlertParams{}.raise_probability);
-  EXPECT_GT(doubted[0].probability, AlertParams{}.clear_probability);
-  picture.tracks[0].velocity_mps.setZero();
+  picture.tracks[0].rectangle.center_m = picture.tracks[0].position_m = picture.tracks[0].outline_m[0];
+  picture.tracks[0].velocity_mps = {0.0, -12.0};
+  Proof proof;
+  proof.Update(picture.tracks);
+  ASSERT_FALSE(proof.IsProven(picture.tracks[0]));
   EXPECT_EQ(GuardZoneDangers(kZone, picture, {}, Own(), {}, nullptr, {}, &proof).at(0).probability, 1.0);
 }
 
@@ -317,28 +338,35 @@ TEST(ClosestApproachDangers, OfACourseThatIsNotProvenAreToldNoLaterThanIfItStood
   EXPECT_EQ(swinging.time_left_s, standing.time_left_s);
 }
 
-// One that is tied up can do nothing about it in the second that it takes to know.
-TEST(ClosestApproachDangers, OfACourseThatIsNotProvenAreNoneForABoatThatLiesStill) {
-  Picture picture;
-  picture.tracks = {At(1, {0.0, 20.0})};
-  auto& track = picture.tracks[0];
-  track.velocity_mps = {0.0, -4.0};
-  track.approach = {.distance_m = 18.0, .cpa_m = 0.0, .tcpa_s = 4.5, .probability = 0.9};
-  Proof proof;
-  const auto told = [&](int scan, bool is_own_still) {
-    track.seen = kStart + scan * std::chrono::milliseconds(100);
-    track.first = kStart - std::chrono::seconds(5);
-    track.position_m = {0.0, 20.0 - 0.4 * scan};
-    proof.Update(picture.tracks);
-    return ClosestApproachDangers(kApproach, picture, Own(), is_own_still, {}, &proof, track.seen).at(0).probability;
-  };
-  EXPECT_EQ(told(0, true), 0.0);
-  EXPECT_GT(told(1, false), 0.5) << "under way a second is much";
-  for (int scan = 2; scan < 10; ++scan) told(scan, true);
-  EXPECT_GT(told(11, true), 0.5) << "it came where its course led";
+TEST(ClosestApproachDangers, OfAPieceOfTheBerthAreNoneForABoatThatLiesStill) {
+  for (const bool is_beside : {false, true}) {
+    SCOPED_TRACE(is_beside ? "beside a boat that stands" : "in open water");
+    Picture picture;
+    picture.tracks = {At(1, {0.0, 20.0})};
+    if (is_beside) picture.tracks.push_back(At(2, {1.5, 20.0}));
+    for (auto& track : picture.tracks) track.rectangle.center_m = track.position_m = track.outline_m[0];
+    Proof proof;
+    const auto told = [&](int scan) {
+      auto& track = picture.tracks[0];
+      track.velocity_mps = {0.0, -4.0};
+      track.approach = {.distance_m = 18.0, .cpa_m = 0.0, .tcpa_s = 4.5, .probability = 0.9};
+      track.seen = kStart + scan * std::chrono::milliseconds(100);
+      track.first = kStart - std::chrono::seconds(5);
+      track.position_m = track.rectangle.center_m = Eigen::Vector2d(100.0, 70.0 - 0.4 * scan);
+      for (auto& corner : track.outline_m) corner.y() -= scan > 0 ? 0.4 : 0.0;
+      proof.Update(picture.tracks);
+      return ClosestApproachDangers(kApproach, picture, Own(), true, {}, &proof, track.seen).at(0);
+    };
+    const auto first = told(0);
+    EXPECT_EQ(first.probability, is_beside ? 0.0 : 0.9);
+    EXPECT_TRUE(first.is_just_seen);
+    for (int scan = 1; scan < 12; ++scan) told(scan);
+    EXPECT_EQ(told(12).probability, 0.9) << "it has left";
+  }
 }
 
-TEST(ClosestApproachDangers, OfATentativeTrackThatRunsWaitUntilItIsNoCrest) {
+// A crest runs; what stands there all the same is told as it was.
+TEST(ClosestApproachDangers, OfATentativeTrackThatRunsAreAsIfItStoodUntilItIsNoCrest) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 20.0}, TrackStatus::kTentative)};
   auto& track = picture.tracks[0];
@@ -347,11 +375,13 @@ TEST(ClosestApproachDangers, OfATentativeTrackThatRunsWaitUntilItIsNoCrest) {
   track.first = kStart - std::chrono::seconds(4);
   track.seen = kStart;
   const Proof proof;
-  EXPECT_EQ(ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).size(), 1U) << "a buoy in waves";
+  const auto probability = [&] { return ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).at(0).probability; };
+  EXPECT_EQ(probability(), 0.8) << "a buoy in waves";
   track.velocity_mps = {0.0, -3.0};
-  EXPECT_TRUE(ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).empty()) << "a crest";
-  track.first = kStart - std::chrono::seconds(6);
-  EXPECT_EQ(ClosestApproachDangers(kApproach, picture, Own(), false, {}, &proof, kStart).size(), 1U) << "no crest lives so long";
+  EXPECT_EQ(probability(), 0.0) << "a crest, and nothing on the way";
+  track.approach_if_standing = track.approach;
+  track.approach_if_standing.probability = 0.7;
+  EXPECT_EQ(probability(), 0.7) << "a crest, or a raft on the way";
 }
 
 TEST(StillWatch, SeesADriftAndADepartureButNoSway) {
