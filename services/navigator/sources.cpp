@@ -105,10 +105,9 @@ std::unique_ptr<runtime::SourceReader> OpenSources(const Params& params, Service
   for (const auto& connection : params.connections) sources.push_back({connection.name, OpenSource(connection)});
   return std::make_unique<runtime::LiveReader>(
       std::move(sources), runtime::LiveReader::Limits{.period = kTick, .max_pieces = kMaxPieces, .reads_when_readable = true},
-      runtime::LiveReader::Handlers{
-          .on_piece = [&service](const std::string& name, const io::Source::Piece& piece) { Pass(name, piece, service); },
-          // A process that stood still since the start of the round would otherwise look like a clock that was set back.
-          .on_round = [&service](const auto& round) { service.AdvanceTo(round.latest); }});
+      runtime::LiveReader::Handlers{.on_piece = [&service](const std::string& name, const io::Source::Piece& piece) { Pass(name, piece, service); },
+                                    // A process that stood still since the start of the round would otherwise look like a clock that was set back.
+                                    .on_round = [&service](const auto& round) { service.AdvanceTo(round.latest); }});
 }
 
 }  // namespace lookout::navigator

@@ -152,7 +152,8 @@ TEST(Structure, ReadmeOfDeployHoldsTheServiceTable) {
   const std::string readme = ReadFile(kSources / "deploy/README.md");
   for (const auto& service : lookout::bus::kServices) {
     std::ostringstream row;
-    row << "| " << service.name << " | " << service.purpose << " | " << service.state << " | " << service.hangup << " | " << service.watchdog_s << " |";
+    row << "| " << service.name << " | " << service.purpose << " | " << service.state << " | " << service.hangup << " | " << service.watchdog_s
+        << " |";
     EXPECT_NE(readme.find(row.str()), std::string::npos) << "deploy/README.md lacks or differs from: " << row.str();
   }
 }

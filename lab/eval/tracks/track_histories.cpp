@@ -28,10 +28,10 @@ constexpr double kLeastHiddenS = 1.0;
 constexpr double kMostHiddenS = 10.0;
 constexpr double kFoundAgainS = 1.0;
 constexpr double kWarningS = 10.0;
-constexpr double kTcpaStepS = 1.0;         // a TCPA that falls by more from one scan to the next does so by a turn
-constexpr double kLeastApproachMps = 1.0;  // slower, TCPA says little
+constexpr double kTcpaStepS = 1.0;            // a TCPA that falls by more from one scan to the next does so by a turn
+constexpr double kLeastApproachMps = 1.0;     // slower, TCPA says little
 constexpr double kTurnRadps = DegToRad(1.5);  // from here on a boat turns
-constexpr double kLeastPassMps = 0.3;      // slower, two keep company
+constexpr double kLeastPassMps = 0.3;         // slower, two keep company
 // A thing that never had a track counts where it was there for twice the time in which 95 % should have one (1 s, 4 s).
 constexpr std::array<double, 2> kLeastSeenS{1.0, 4.0};
 
@@ -235,7 +235,8 @@ void ScoreApproaches(const History& history, const ApproachLimits& limits, Track
     }
     const auto& own = *scan->own;
     const auto truth = ApproachOf(own.outline_m, own.velocity_mps, thing->outline_m, thing->velocity_mps);
-    if (both_keep && truth.tcpa_s > 0.0 && track != nullptr && !std::isnan(track->cpa_probability) && SecondsBetween(*first_us, utime_us) >= kSettledS) {
+    if (both_keep && truth.tcpa_s > 0.0 && track != nullptr && !std::isnan(track->cpa_probability) &&
+        SecondsBetween(*first_us, utime_us) >= kSettledS) {
       const double nearest_m = truth.tcpa_s <= limits.look_ahead_s
                                    ? truth.cpa_m
                                    : GapAfter(limits.look_ahead_s, own.outline_m, own.velocity_mps, thing->outline_m, thing->velocity_mps);

@@ -192,7 +192,8 @@ std::string Ttm(std::string_view talker, const OwnShip& own, const Target& targe
                                   Degrees(relative.bearing_rad), Speed(target.speed_mps, unit), Degrees(target.course_rad),
                                   std::isfinite(target.course_rad) ? "T" : "", Number(target.cpa_m / MetresIn(unit), 4),
                                   Number(target.tcpa_s / kSecondsPerMinute, 3), LetterOf(unit));
-  // Time and way of acquisition are of version 3 on; they give way to names that people gave, and to numbers of more digits than any target at sea has.
+  // Time and way of acquisition are of version 3 on; they give way to names that people gave, and to numbers of more digits than any target at sea
+  // has.
   const std::size_t least_name = target.given_name.empty() ? 6 : target.given_name.size();
   auto after = fmt::format(",{},,{},A", LetterOf(target.state), TimeOfDay(own.time));
   if (RoomFor(before, after) < least_name) after = fmt::format(",{},", LetterOf(target.state));
