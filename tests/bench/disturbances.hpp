@@ -6,17 +6,12 @@
 #include <thread>
 
 #include "tests/bench/bus_tap.hpp"
+#include "tests/support/socket.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::bench {
 
-inline sockaddr_in Ipv4(const std::string& address, int port) {
-  sockaddr_in result{};
-  result.sin_family = AF_INET;
-  result.sin_port = htons(static_cast<std::uint16_t>(port));
-  inet_pton(AF_INET, address.c_str(), &result.sin_addr);
-  return result;
-}
+using support::Ipv4;
 
 /// Another VLP-16, which sees a wall 5 m off all round, sends to the same ports until this is destroyed.
 class ForeignLidar {

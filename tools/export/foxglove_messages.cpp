@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <bit>
 #include <cmath>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/descriptor.pb.h>
@@ -19,6 +18,7 @@
 #include "common/messages/checks.hpp"
 #include "common/messages/pose_message.hpp"
 #include "tools/export/boat_of_log.hpp"
+#include "tools/export/little_endian.hpp"
 #include "tools/export/returns.hpp"
 #include "tools/export/schema/foxglove.pb.h"
 #include "tools/export/words.hpp"
@@ -74,11 +74,6 @@ void SetColor(const Rgb& rgb, double opacity, foxglove::Color* color) {
   color->set_g(rgb[1]);
   color->set_b(rgb[2]);
   color->set_a(opacity);
-}
-
-void AppendFloat(std::string& bytes, double value) {
-  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
-  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<char>(bits >> (8 * i) & 0xFF));
 }
 
 // An outline of corners, at a height.
@@ -181,7 +176,7 @@ void FoxgloveMessages::OnScan(const lidar_scan_t& message) {
     cloud_utime_us_ = message.utime_us;
   }
   ForEachReturn(message, nullptr, [this](const Return& one) {
-    for (int axis = 0; axis < 3; ++axis) AppendFloat(points_, one.p_lidar_m[axis]);
+    for (int axis = 0; axis < 3; ++axis) AppendFloat(one.p_lidar_m[axis], points_);
     points_.push_back(static_cast<char>(one.reflectivity));
     points_.push_back(static_cast<char>(one.ring));
   });

@@ -1,19 +1,13 @@
-#include <bit>
 #include <cstdint>
 #include <string>
 
+#include "tools/export/little_endian.hpp"
 #include "tools/export/returns.hpp"
 #include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
 
 namespace {
-
-void AppendPcdNumber(std::uint32_t value, int num_bytes, std::string& text) {
-  for (int i = 0; i < num_bytes; ++i) text += static_cast<char>(value >> (8 * i) & 0xFF);
-}
-
-void AppendPcdFloat(double value, std::string& text) { AppendPcdNumber(std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4, text); }
 
 class PcdSink final : public Sink {
  public:
@@ -32,16 +26,16 @@ class PcdSink final : public Sink {
     for (const auto& [part_index, part] : scan->scans) {
       ForEachReturn(part, LabelsOf(*scan, part), [&](const Return& one) {
         ++count;
-        for (const double coordinate_m : {one.p_lidar_m.x(), one.p_lidar_m.y(), one.p_lidar_m.z()}) AppendPcdFloat(coordinate_m, points);
-        AppendPcdFloat(one.reflectivity, points);
-        AppendPcdNumber(static_cast<std::uint32_t>(one.has_label ? one.label : -1), 4, points);
-        AppendPcdNumber(static_cast<std::uint32_t>(one.ring), 2, points);
+        for (const double coordinate_m : {one.p_lidar_m.x(), one.p_lidar_m.y(), one.p_lidar_m.z()}) AppendFloat(coordinate_m, points);
+        AppendFloat(one.reflectivity, points);
+        AppendLittleEndian(static_cast<std::uint32_t>(one.has_label ? one.label : -1), 4, points);
+        AppendLittleEndian(static_cast<std::uint32_t>(one.ring), 2, points);
         // Seconds since the first firing, as drivers of lidars give them.
-        AppendPcdFloat(static_cast<double>(one.utime_us - scan->utime_us) * 1e-6, points);
+        AppendFloat(static_cast<double>(one.utime_us - scan->utime_us) * 1e-6, points);
       });
     }
     const auto number = std::to_string(count);
-    text += "# .PCD v0.7 - Lookout, turn " + std::to_string(scan->seq) + ", first firing at " + std::to_string(scan->utime_us) +
+    text += "# .PCD v0.7 - Lookout, scan " + std::to_string(scan->seq) + ", first firing at " + std::to_string(scan->utime_us) +
             " us since 1970 UTC; lidar frame, metres\n"
             "VERSION 0.7\nFIELDS x y z intensity label ring time\nSIZE 4 4 4 4 4 2 4\nTYPE F F F F I U F\nCOUNT 1 1 1 1 1 1 1\nWIDTH " +
             number + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + number + "\nDATA binary\n";

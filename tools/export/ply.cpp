@@ -1,20 +1,14 @@
-#include <bit>
 #include <cstdint>
 #include <string>
 
 #include "tools/export/colour.hpp"
+#include "tools/export/little_endian.hpp"
 #include "tools/export/returns.hpp"
 #include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
 
 namespace {
-
-void AppendLittleEndian(std::uint32_t value, int num_bytes, std::string& text) {
-  for (int i = 0; i < num_bytes; ++i) text += static_cast<char>(value >> (8 * i) & 0xFF);
-}
-
-void AppendFloat(double value, std::string& text) { AppendLittleEndian(std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4, text); }
 
 constexpr int kUnknownLabel = -1;
 
@@ -45,7 +39,7 @@ class PlySink final : public Sink {
     }
     text +=
         "ply\nformat binary_little_endian 1.0\n"
-        "comment Lookout, turn " +
+        "comment Lookout, scan " +
         std::to_string(scan->seq) + ", first firing at " + std::to_string(scan->utime_us) +
         " us since 1970 UTC\n"
         "comment lidar frame, metres: x along azimuth 0, y left, z up\n"

@@ -21,4 +21,14 @@ struct Body::Measured {
   bool Tells(std::size_t i, double beyond_m) const { return short_m > 0.0 ? beyond_m > 0.0 : kind[i] == Kind::kEdge; }
 };
 
+// An outline that is seen for the first time.
+struct Body::First {
+  Eigen::Vector2d middle_m;
+  Reaches sides;  // from there
+};
+
+/// Uncertainty of a place from scan to scan.
+/// @param covariance_m2  of its position relative to the own boat
+Eigen::Matrix2d NoiseOf(const Eigen::Matrix2d& covariance_m2, double range_m);
+
 }  // namespace lookout::tracker

@@ -147,7 +147,7 @@ TEST_F(ExportTest, PlyHoldsOneVertexPerReturnOfTheScan) {
   Add(bus::kSegments, MakeSegments(MakeScan(1, 1), 2));
   ASSERT_EQ(Export("returns", "ply"), kExitFine) << errors_;
   EXPECT_NE(text_.find("element vertex 2\n"), std::string::npos);
-  EXPECT_NE(text_.find("turn 1,"), std::string::npos);
+  EXPECT_NE(text_.find("scan 1,"), std::string::npos);
   const std::string end = "end_header\n";
   const auto body = text_.substr(text_.find(end) + end.size());
   constexpr std::size_t kVertexBytes = 3 * 4 + 3 + 4 + 4 + 2;
