@@ -8,7 +8,10 @@ from . import types
 _HEAD = struct.Struct('>IqqII')
 _SYNC = 0xEDA1DA01
 _SYNC_BYTES = struct.pack('>I', _SYNC)
-_MOST_NAME_BYTES = 63
+_MOST_NAME_BYTES = 63  # LCM; its logs allow more
+_MOST_NAME_BYTES_READ = 1000
+_MOST_DATA_BYTES = 16 << 20
+_LEAST_TIME_US, _MOST_TIME_US = -2_208_988_800_000_000, 7_258_118_400_000_000  # the years 1900 to 2200
 _BLOCK_BYTES = 1 << 20
 
 
@@ -20,11 +23,12 @@ class Event(typing.NamedTuple):
 
 
 class LogReader:
-    """Iterates over the events of a log. Damaged stretches are skipped and counted in `num_damaged`."""
+    """Iterates over the events of a log. Damaged stretches, and events of more than 16 MiB, are skipped and counted in `num_damaged`."""
 
     def __init__(self, path):
         self._file = open(path, 'rb')
         self._size = os.fstat(self._file.fileno()).st_size
+        self._block_at, self._block = 0, b''
         self.num_damaged = 0
 
     def close(self):
@@ -58,19 +62,26 @@ class LogReader:
             return None, at
         sync, number, time_us, num_name, num_data = _HEAD.unpack(head)
         end = at + _HEAD.size + num_name + num_data
-        if sync != _SYNC or not 0 < num_name <= _MOST_NAME_BYTES or end > self._size:
+        is_sound = sync == _SYNC and 0 < num_name <= _MOST_NAME_BYTES_READ and num_data <= _MOST_DATA_BYTES and end <= self._size
+        if not is_sound or not _LEAST_TIME_US <= time_us <= _MOST_TIME_US:
             return None, at
         body = self._file.read(num_name + num_data)
+        # A damaged length that fits in the file would swallow the events behind it: then none begins at its end, but some within.
+        if end < self._size and self._file.read(len(_SYNC_BYTES)) != _SYNC_BYTES and _SYNC_BYTES in body:
+            return None, at
         return Event(number, time_us, body[:num_name].decode('utf-8', 'replace'), body[num_name:]), end
 
     def _find_sync(self, at):
         while at < self._size:
-            self._file.seek(at)
-            block = self._file.read(_BLOCK_BYTES + len(_SYNC_BYTES) - 1)
-            found = block.find(_SYNC_BYTES)
+            if not self._block_at <= at < self._block_at + len(self._block) - len(_SYNC_BYTES) + 1:
+                self._file.seek(at)
+                self._block_at, self._block = at, self._file.read(_BLOCK_BYTES)
+                if len(self._block) < len(_SYNC_BYTES):
+                    break
+            found = self._block.find(_SYNC_BYTES, at - self._block_at)
             if found >= 0:
-                return at + found
-            at += _BLOCK_BYTES
+                return self._block_at + found
+            at = self._block_at + len(self._block) - len(_SYNC_BYTES) + 1
         return self._size
 
 
@@ -103,7 +114,9 @@ class LogWriter:
 
 
 def types_of_log(path):
-    """The types that the log's first RUN_INFO describes: those of the version that wrote it. Those of this version where there is none."""
+    """The types that the log's first RUN_INFO describes: those of the version that wrote it. Those of this version where there is none.
+
+    @raise DecodeError: the description cannot be read"""
     with LogReader(path) as log:
         for event in log:
             if event.channel != 'RUN_INFO':
@@ -114,7 +127,10 @@ def types_of_log(path):
                 continue
             texts = [text for name, text in zip(info.file_name, info.file_text) if name.startswith('lcmtypes/')]
             if texts:
-                return types.Types(texts)
+                try:
+                    return types.Types(texts)
+                except (AttributeError, KeyError, ValueError, IndexError) as error:
+                    raise types.DecodeError(f'RUN_INFO describes types that cannot be read: {error}') from error
     return types.this_version
 
 

@@ -13,9 +13,11 @@ def table(path, channel, part=None, of_types=None):
             lengths are left out. Empty where the log holds nothing of it"""
     rows, columns = [], None
     for _, message in log.messages(path, channel, of_types=of_types):
-        for row in (getattr(message, part) if part else [message]):
+        for row in (getattr(message, part, []) if part else [message]):
             if columns is None:
-                columns = _columns_of(row)
+                columns, kind_of_row = _columns_of(row), type(row)
+            if type(row) is not kind_of_row:
+                continue  # another type that came on the channel
             values = tuple(_value(getattr(row, name)) for name, _ in columns)
             rows.append((message.utime_us, message.seq) + values if part else values)
     if columns is None:

@@ -140,8 +140,9 @@ class _Field:
     def put(self, value, message, parts):
         if self.sizes and self.dtype is not None:
             fixed = [size for size in self.sizes if isinstance(size, int)]
-            array = numpy.asarray(value).astype(self.dtype)
-            if list(array.shape[len(self.sizes) - len(fixed):]) != fixed and array.size:
+            array = self._as_stored(value)
+            may_be_empty = len(fixed) < len(self.sizes) and not array.size
+            if list(array.shape[len(self.sizes) - len(fixed):]) != fixed and not may_be_empty:
                 raise ValueError(f'{self.name} has the shape {array.shape}, not {self.sizes}')
             parts.append(array.tobytes())
             return
@@ -152,7 +153,14 @@ class _Field:
                 text = one.encode('utf-8') + b'\0'
                 parts.append(struct.pack('>i', len(text)) + text)
             else:
-                parts.append(numpy.array(one).astype(self.dtype).tobytes())
+                parts.append(self._as_stored(one).tobytes())
+
+    def _as_stored(self, value):
+        given = numpy.asarray(value)
+        stored = given.astype(self.dtype)
+        if stored.dtype.kind == 'i' and given.dtype.kind in 'iuO' and not numpy.array_equal(stored, given):
+            raise ValueError(f'{self.name}: {value} has no room in {self.kind}')
+        return stored
 
 
 def _hash_update(value, number):

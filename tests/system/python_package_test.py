@@ -62,6 +62,29 @@ try:
 except ValueError:
     pass
 
+for wrong in ({'status': 2 ** 40 + 3}, {'covariance': []}):
+    try:
+        lookout.message_types.pose_t(**wrong).encode()
+        raise AssertionError(f'{wrong} is encoded')
+    except (ValueError, OverflowError):
+        pass
+
+# A damaged length that fits into the log loses its own event alone; the name of a channel may be longer than LCM sends; no time is beyond all years.
+with lookout.LogWriter(work / 'small.lcmlog') as writer:
+    for number in range(50):
+        writer.write(1_700_000_000_000_000 + number, 'A', bytes(40))
+small = bytearray((work / 'small.lcmlog').read_bytes())
+size = len(small) // 50
+small[10 * size + 24:10 * size + 28] = (40 + 5 * size + 7).to_bytes(4, 'big')
+small[20 * size + 12:20 * size + 20] = (-2 ** 62).to_bytes(8, 'big', signed=True)
+long_name = bytearray(small[:size])
+long_name[20:28] = (300).to_bytes(4, 'big') + (0).to_bytes(4, 'big')
+(work / 'small_damaged.lcmlog').write_bytes(small + long_name[:28] + b'B' * 300)
+with lookout.LogReader(work / 'small_damaged.lcmlog') as reader:
+    events = list(reader)
+    assert reader.num_damaged == 2 and len(events) == 49 and events[-1].channel == 'B' * 300, (reader.num_damaged, len(events))
+    assert {len(event.data) for event in events[:-1]} == {40}
+
 # A damaged log: what stands before and after.
 data = bytearray(log.read_bytes())
 middle = len(data) // 2

@@ -125,6 +125,16 @@ foxglove::SceneEntity* AddEntity(std::int64_t utime_us, std::string_view frame, 
   return entity;
 }
 
+void AddTransform(std::int64_t utime_us, const char* parent, const char* child, const Eigen::Vector3d& translation_m, const Eigen::Matrix3d& rotation,
+                  foxglove::FrameTransforms& transforms) {
+  auto* transform = transforms.add_transforms();
+  SetTime(utime_us, transform->mutable_timestamp());
+  transform->set_parent_frame_id(parent);
+  transform->set_child_frame_id(child);
+  SetVector(translation_m, transform->mutable_translation());
+  SetRotation(rotation, transform->mutable_rotation());
+}
+
 // A file behind all that it needs.
 void AddFile(const google::protobuf::FileDescriptor& file, std::set<std::string>& taken, google::protobuf::FileDescriptorSet& set) {
   if (!taken.insert(file.name()).second) return;
@@ -170,11 +180,13 @@ void FoxgloveMessages::Take(std::string_view channel, Bytes bytes) {
 }
 
 void FoxgloveMessages::OnScan(const lidar_scan_t& message) {
-  if (cloud_seq_ != message.seq) {
+  // A part that comes again, or out of order, begins a cloud of its own.
+  if (cloud_seq_ != message.seq || cloud_utime_us_ != message.utime_us || message.part_index <= cloud_part_) {
     WriteCloud();
     cloud_seq_ = message.seq;
     cloud_utime_us_ = message.utime_us;
   }
+  cloud_part_ = message.part_index;
   ForEachReturn(message, nullptr, [this](const Return& one) {
     for (int axis = 0; axis < 3; ++axis) AppendFloat(one.p_lidar_m[axis], points_);
     points_.push_back(static_cast<char>(one.reflectivity));
@@ -205,6 +217,11 @@ void FoxgloveMessages::WriteCloud() {
   Send(FoxgloveTopic::kPoints, cloud);
   points_.clear();
   cloud_seq_.reset();
+  cloud_part_ = -1;
+  if (!boat_) return;
+  foxglove::FrameTransforms transforms;
+  AddTransform(cloud_utime_us_, "vessel", "lidar", boat_->T_vessel_lidar.translation(), boat_->T_vessel_lidar.linear(), transforms);
+  Send(FoxgloveTopic::kTransforms, transforms);
 }
 
 void FoxgloveMessages::Finish() { WriteCloud(); }
@@ -222,12 +239,13 @@ void FoxgloveMessages::OnObstacles(const obstacles_t& message) {
     AddPair("range_m", fmt::format("{}", obstacle.range_m), entity);
     AddPair("returns", std::to_string(obstacle.num_points), entity);
     const double opacity = is_sure ? 1.0 : 0.5;
+    const double water_z_m = is_placed ? 0.0 : -reference_point_above_water_m();
     if (is_land && obstacle.num_waterline > 0) {
       AddLine(is_placed ? obstacle.waterline_east_m : obstacle.waterline_vessel_x_m,
-              is_placed ? obstacle.waterline_north_m : obstacle.waterline_vessel_y_m, 0.0, false, rgb, opacity, entity);
+              is_placed ? obstacle.waterline_north_m : obstacle.waterline_vessel_y_m, water_z_m, false, rgb, opacity, entity);
     } else {
       AddLine(is_placed ? obstacle.footprint_east_m : obstacle.footprint_vessel_x_m,
-              is_placed ? obstacle.footprint_north_m : obstacle.footprint_vessel_y_m, 0.0, true, rgb, opacity, entity);
+              is_placed ? obstacle.footprint_north_m : obstacle.footprint_vessel_y_m, water_z_m, true, rgb, opacity, entity);
     }
   }
   Send(FoxgloveTopic::kObstacles, scene);
@@ -235,10 +253,14 @@ void FoxgloveMessages::OnObstacles(const obstacles_t& message) {
 
 void FoxgloveMessages::OnTracks(const tracks_t& message) {
   constexpr double kArrowS = 10.0;  // the way of so long
+  constexpr double kMostMps = 1000.0;
   auto scene = BeginScene(message.end_utime_us, message.part_index);
-  auto features = nlohmann::ordered_json::array();
+  if (message.part_index == 0) features_.clear();
   for (const auto& track : message.tracks) {
     if (track.status == track_t::STATUS_TENTATIVE || track.status == track_t::STATUS_LOST) continue;
+    const Eigen::Vector2d velocity_mps(track.velocity_map_mps[0], track.velocity_map_mps[1]);
+    const double speed_mps = std::sqrt(velocity_mps.squaredNorm());
+    if (!std::isfinite(track.position_map_m[0]) || !std::isfinite(track.position_map_m[1]) || !(speed_mps < kMostMps)) continue;
     const auto kind = std::string(words::WordOf(words::kTrackKind, track.kind));
     const auto name = kind + " " + std::to_string(track.id);
     const Eigen::Vector3d place_m(track.position_map_m[0], track.position_map_m[1], 0.0);
@@ -249,8 +271,7 @@ void FoxgloveMessages::OnTracks(const tracks_t& message) {
     AddPair("tcpa_s", fmt::format("{}", track.tcpa_s), entity);
     AddLine(track.outline_east_m, track.outline_north_m, 0.0, true, kTrackRgb, track.status == track_t::STATUS_COASTING ? 0.5 : 1.0, entity);
     AddText(name, place_m + Eigen::Vector3d(0.0, 0.0, 1.0), kTrackRgb, entity);
-    const Eigen::Vector2d velocity_mps(track.velocity_map_mps[0], track.velocity_map_mps[1]);
-    if (const double speed_mps = std::sqrt(velocity_mps.squaredNorm()); speed_mps > 0.1) {
+    if (speed_mps > 0.1) {
       auto* arrow = entity->add_arrows();
       Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
       rotation.col(0) = Eigen::Vector3d(velocity_mps.x() / speed_mps, velocity_mps.y() / speed_mps, 0.0);
@@ -263,37 +284,34 @@ void FoxgloveMessages::OnTracks(const tracks_t& message) {
       SetColor(kTrackRgb, 1.0, arrow->mutable_color());
     }
     if (!std::isfinite(track.latitude_deg) || !std::isfinite(track.longitude_deg)) continue;
-    features.push_back(
+    features_.push_back(
         {{"type", "Feature"},
          {"geometry", {{"type", "Point"}, {"coordinates", {track.longitude_deg, track.latitude_deg}}}},
          {"properties", {{"name", name}, {"speed_mps", NumberOrNull(track.speed_mps)}, {"course_deg", NumberOrNull(RadToDeg(track.course_rad))}}}});
   }
   Send(FoxgloveTopic::kTracks, scene);
+  if (message.part_index + 1 < message.num_parts) return;  // a collection takes the place of the one before
   foxglove::GeoJSON places;
-  places.set_geojson(nlohmann::ordered_json{{"type", "FeatureCollection"}, {"features", features}}.dump());
+  places.set_geojson(nlohmann::ordered_json{{"type", "FeatureCollection"}, {"features", features_}}.dump());
+  features_ = nlohmann::ordered_json::array();
   Send(FoxgloveTopic::kPlaces, places);
 }
 
 void FoxgloveMessages::OnPose(const pose_t& message) {
-  foxglove::FrameTransforms transforms;
-  const auto add = [&](const char* parent, const char* child, const Eigen::Vector3d& translation_m, const Eigen::Matrix3d& rotation) {
-    auto* transform = transforms.add_transforms();
-    SetTime(message.utime_us, transform->mutable_timestamp());
-    transform->set_parent_frame_id(parent);
-    transform->set_child_frame_id(child);
-    SetVector(translation_m, transform->mutable_translation());
-    SetRotation(rotation, transform->mutable_rotation());
-  };
   const auto checked = messages::ToPose(message);
   if (const auto* pose = std::get_if<Pose>(&checked); pose != nullptr && pose->is_placed) {
     // Its axes differ from the map's only away from the datum.
     PoseHistory history;
     history.Add(*pose);
     const auto& here = *history.newest();
-    add("map", "vessel", here.position_map_m, here.R_map_here * RotationMapVessel(here.heading_rad, here.pitch_rad, here.roll_rad));
+    // Outlines have no height: they are drawn on the water, so the boat floats on it, whatever GNSS says of heights.
+    Eigen::Vector3d place_m = here.position_map_m;
+    place_m.z() = reference_point_above_water_m() + (std::isfinite(message.heave_m) ? message.heave_m : 0.0);
+    foxglove::FrameTransforms transforms;
+    AddTransform(message.utime_us, "map", "vessel", place_m, here.R_map_here * RotationMapVessel(here.heading_rad, here.pitch_rad, here.roll_rad),
+                 transforms);
+    Send(FoxgloveTopic::kTransforms, transforms);
   }
-  if (boat_) add("vessel", "lidar", boat_->T_vessel_lidar.translation(), boat_->T_vessel_lidar.linear());
-  if (transforms.transforms_size() > 0) Send(FoxgloveTopic::kTransforms, transforms);
   if (message.utime_us % kLocationPeriodUs != 0 || !std::isfinite(message.latitude_deg) || !std::isfinite(message.longitude_deg)) return;
   foxglove::LocationFix fix;
   SetTime(message.utime_us, fix.mutable_timestamp());

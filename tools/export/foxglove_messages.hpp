@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,7 +45,7 @@ inline constexpr std::array kFoxgloveChannels{FoxgloveChannel{FoxgloveTopic::kPo
 /// A FileDescriptorSet with the files of a schema and all that these need, each behind what it needs. @throws std::logic_error for an unknown one
 std::string FoxgloveDescriptors(std::string_view schema);
 
-/// Frames: map (POSE places the boat in it), vessel, lidar.
+/// Frames: map (east, north; z is up from calm water, on which POSE places the boat), vessel, lidar.
 class FoxgloveMessages {
  public:
   using Write = std::function<void(FoxgloveTopic topic, const std::string& bytes)>;
@@ -65,6 +66,7 @@ class FoxgloveMessages {
   void OnTracks(const tracks_t& message);
   void OnPose(const pose_t& message);
   void OnAlerts(const alerts_t& message);
+  double reference_point_above_water_m() const { return boat_ ? boat_->reference_point_above_water_m : 0.0; }
   void WriteCloud();
   void Send(FoxgloveTopic topic, const google::protobuf::Message& message);
 
@@ -73,8 +75,10 @@ class FoxgloveMessages {
   // The cloud under way: of one scan, part by part.
   std::optional<std::int64_t> cloud_seq_;
   std::int64_t cloud_utime_us_ = 0;
+  std::int32_t cloud_part_ = -1;  // the last
   std::string points_;
-  std::map<std::int64_t, std::array<std::int32_t, 3>> told_;  // alerts: level, state, end
+  nlohmann::ordered_json features_ = nlohmann::ordered_json::array();  // of the parts of TRACKS so far
+  std::map<std::int64_t, std::array<std::int32_t, 3>> told_;           // alerts: level, state, end
   std::int64_t num_unused_ = 0;
 };
 

@@ -2,6 +2,7 @@
 #include "tools/export/mcap.hpp"
 
 #include <gtest/gtest.h>
+#include <limits>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -13,6 +14,8 @@
 #include "lookout/alerts_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "lookout/tracks_t.hpp"
 #include "tests/support/files.hpp"
 #include "tools/export/foxglove_messages.hpp"
 #include "tools/export/mcap_writer.hpp"
@@ -151,6 +154,7 @@ TEST(FoxgloveMessages, JoinThePartsOfAScan) {
   EXPECT_EQ(cloud.timestamp().nanos(), 500'000'000);
   EXPECT_EQ(cloud.data()[12], 7);
   EXPECT_EQ(Parsed<foxglove::PointCloud>(drawn[1].bytes).data().size(), 14U);
+  EXPECT_EQ(Draw(bus::kLidarScan, std::vector(5, second)).size(), 5U) << "a part that comes again makes no cloud that grows";
 }
 
 TEST(FoxgloveMessages, DrawAnObstacleWhereItsPlaceIsKnownInTheMapElseBesideTheBoat) {
@@ -177,6 +181,52 @@ TEST(FoxgloveMessages, DrawAnObstacleWhereItsPlaceIsKnownInTheMapElseBesideTheBo
   EXPECT_EQ(scene.entities(0).lines(0).points(0).x(), 100.0);
   EXPECT_EQ(scene.entities(1).frame_id(), "vessel");
   EXPECT_EQ(scene.entities(1).lines(0).points(0).x(), 3.0);
+}
+
+// Heights by GNSS are metres off, and 200 m where the datum had none; obstacles have no height at all.
+TEST(FoxgloveMessages, LetTheBoatFloatOnTheWaterOnWhichObstaclesAreDrawn) {
+  pose_t pose{};
+  pose.utime_us = 20'000;
+  pose.has_attitude = true;
+  pose.latitude_deg = pose.datum_latitude_deg = 1.0;
+  pose.longitude_deg = pose.datum_longitude_deg = 2.0;
+  pose.position_map_m[2] = 201.4;
+  pose.ellipsoid_height_m = 201.4;
+  pose.heave_m = 0.3;
+  for (int i = 0; i < 9; ++i) pose.covariance[i][i] = 1.0;
+  const auto drawn = Draw(bus::kPose, std::vector{pose});
+  ASSERT_FALSE(drawn.empty());
+  ASSERT_EQ(drawn[0].topic, FoxgloveTopic::kTransforms);
+  const auto transforms = Parsed<foxglove::FrameTransforms>(drawn[0].bytes);
+  ASSERT_EQ(transforms.transforms_size(), 1);
+  EXPECT_EQ(transforms.transforms(0).child_frame_id(), "vessel");
+  EXPECT_DOUBLE_EQ(transforms.transforms(0).translation().z(), 0.3);
+}
+
+TEST(FoxgloveMessages, JoinThePartsOfTracksOnTheMapAndLeaveOutWhatHasNoPlace) {
+  tracks_t part{};
+  part.num_parts = 2;
+  part.num_tracks = 2;
+  part.tracks.resize(2);
+  for (auto& track : part.tracks) track.status = track_t::STATUS_CONFIRMED;
+  part.tracks[0].id = 4;
+  part.tracks[1].id = 5;
+  part.tracks[1].velocity_map_mps[0] = 1e200;
+  auto second = part;
+  second.part_index = 1;
+  second.tracks[0].id = 6;
+  second.tracks[1].position_map_m[0] = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::string> places;
+  int num_entities = 0;
+  for (const auto& [topic, bytes] : Draw(bus::kTracks, std::vector{part, second})) {
+    if (topic == FoxgloveTopic::kPlaces) places.push_back(Parsed<foxglove::GeoJSON>(bytes).geojson());
+    if (topic == FoxgloveTopic::kTracks) num_entities += Parsed<foxglove::SceneUpdate>(bytes).entities_size();
+  }
+  EXPECT_EQ(num_entities, 2);
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_NE(places[0].find(" 4\""), std::string::npos) << places[0];
+  EXPECT_NE(places[0].find(" 6\""), std::string::npos) << places[0];
+  EXPECT_EQ(places[0].find(" 5\""), std::string::npos) << places[0];
 }
 
 TEST(FoxgloveMessages, TellAnAlertWhenItChanges) {
