@@ -43,8 +43,6 @@ std::vector<Eigen::Vector2d> InVessel(std::span<const Eigen::Vector2d> corners_m
   return corners_m;
 }
 
-bool IsConfirmed(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
-
 DangerPlace PlaceOf(const NearestPoint& point, const std::optional<Pose>& own) {
   DangerPlace place{point.range_m, point.bearing_rad};
   if (own) {

@@ -51,6 +51,8 @@ struct Track {
   ClosestApproach approach_if_standing;  // where its velocity is not believed
   Encounter encounter = Encounter::kNone;
 };
+/// By now or before: it is there, or is hidden for a moment.
+inline bool IsConfirmed(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
 
 /// The picture after a scan.
 struct Picture {

@@ -11,7 +11,7 @@ namespace lookout::tracker {
 namespace {
 
 bool Stands(const Track& track) {
-  const bool is_confirmed = track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting;
+  const bool is_confirmed = IsConfirmed(track);
   return is_confirmed && track.velocity_mps.isZero(0.0) && !track.outline_m.empty();
 }
 

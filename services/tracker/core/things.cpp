@@ -14,7 +14,6 @@ namespace {
 // Longer than the boats around: a piece of a pier, a barge.
 constexpr double kLongM = 8.0;
 
-bool IsConfirmed(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
 bool IsLikely(const Track& track) { return track.status == TrackStatus::kTentative && track.existence_probability >= Proof::kLikely; }
 bool IsStructure(const Track& track) { return track.kind == TrackKind::kStructure || track.rectangle.length_m >= kLongM; }
 
