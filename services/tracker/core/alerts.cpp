@@ -178,8 +178,9 @@ void Alerts::Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole,
   entry.warning.Update(time, is_whole, says_warning, says_no_warning, clear_s);
   Advance(entry, thing, time);
   if (!entry.HasAlert() || !entry.alert->Holds()) return;
+  const DangerPlace last{entry.alert->distance_m, entry.alert->bearing_rad, entry.alert->place_map_m};
   Tell(entry, evidence, time);
-  UpdatePlaces(entry, time, is_whole, evidence);
+  UpdatePlaces(entry, time, is_whole, evidence, last);
 }
 
 // Whether its track is still there; of an alert without one the place as it lies from the boat now.
@@ -252,8 +253,8 @@ void Alerts::Tell(Entry& entry, const Evidence& evidence, Utime time) const {
   alert.time_left_s = approach == nullptr ? kNan : approach->time_left_s;
 }
 
-// Precondition: the alert holds.
-void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidence& evidence) const {
+// Precondition: the alert holds. `last` is where it was told in the scan before.
+void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidence& evidence, const DangerPlace& last) const {
   std::vector<DangerPlace> places;
   for (const auto* danger : evidence) {
     if (danger != nullptr) std::ranges::copy(danger->places, std::back_inserter(places));
@@ -265,9 +266,9 @@ void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidenc
   auto& alert = *entry.alert;
   std::optional<DangerPlace> untold;
   if (!entry.told && alert.state == AlertState::kAcknowledged && !places.empty()) {
-    // The acknowledgement was given to a thing with one place.
+    // The acknowledgement was given to a thing with one place: what has come to it since was not told.
     entry.told.emplace(alert.thing == kUnnamed ? ToldPlaces::Kind::kThings : ToldPlaces::Kind::kLand);
-    entry.told->Tell(time, places);
+    entry.told->Tell(time, {&last, 1});
   }
   if (entry.told) {
     untold = entry.told->Untold(time, places);

@@ -204,7 +204,7 @@ class Alerts {
   void Update(Entry& entry, std::int64_t thing, Utime time, bool is_whole, const Evidence& evidence, const Surroundings& around);
   void Tell(Entry& entry, const Evidence& evidence, Utime time) const;
   const Danger* ToldOf(const Evidence& evidence, bool comes_near) const;
-  void UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidence& evidence) const;
+  void UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Evidence& evidence, const DangerPlace& last) const;
   static void LookFor(Entry& entry, std::int64_t thing, Utime time, const Evidence& evidence, const Surroundings& around);
   static void TellPlaces(Entry& entry, std::int64_t thing, const Acknowledgement& acknowledgement);
   std::optional<Danger> FindUnnamed(const std::map<std::int64_t, Evidence>& dangers) const;

@@ -216,5 +216,22 @@ TEST_F(AlertsTest, OfAThingWithoutATrackRingAgainWhenItComesMuchNearer) {
   EXPECT_EQ(Only().state, AlertState::kActive);
 }
 
+// A swimmer comes up beside a buoy that somebody has acknowledged, and is taken for one thing with it.
+TEST_F(AlertsTest, OfAThingThatWasAcknowledgedAloneRingForWhatComesToItSince) {
+  for (const bool is_piece : {true, false}) {
+    SCOPED_TRACE(is_piece ? "a piece of the same" : "on another side, and nearer");
+    alerts_ = Alerts(kAlertParams);
+    auto alone = Zone(7, 8.0);
+    alone.is_grave = false;
+    Scans(5, {alone});
+    ASSERT_TRUE(Acknowledge(Only()));
+    Scans(5, {alone});
+    auto both = Of(7, {At(0.0, 8.0), is_piece ? At(4.0, 8.1) : At(80.0, 3.0)});
+    both.is_grave = false;
+    Scans(10, {both});
+    EXPECT_EQ(Only().state, is_piece ? AlertState::kAcknowledged : AlertState::kActive);
+  }
+}
+
 }  // namespace
 }  // namespace lookout::tracker
