@@ -120,6 +120,8 @@ std::vector<std::string> ResultLines(const RosImport& import, const LogMaker& lo
     lines.push_back(
         fmt::format("points: {}, of them {} without a return, {} out of range, {} hidden by a nearer one of their cell, {} of no known ring",
                     counts.num_points, counts.num_empty, counts.num_out_of_range, counts.num_hidden, counts.num_no_ring));
+    if (counts.num_no_time > 0)
+      lines.push_back(fmt::format("points: {} without a time of their own, which have that of the point before", counts.num_no_time));
   }
   for (const auto& remark : import.clouds().Remarks()) lines.push_back(remark);
   for (const auto& counter : log.counters()) {

@@ -42,8 +42,7 @@ void RosImport::Learn(Recording& recording) {
     const auto use = map_.find(message->topic->name);
     if (use == map_.end() || use->second.use != Use::kLidarScan) continue;
     if (const auto cloud = ParsePointCloud(message->topic->encoding, message->bytes)) {
-      clouds_.Learn(*cloud);
-      ++num_clouds;
+      num_clouds += clouds_.Learn(*cloud) ? 1 : 0;
     }
   }
 }

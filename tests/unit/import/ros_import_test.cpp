@@ -378,6 +378,116 @@ TEST(CloudScans, WithoutRingsAndTimesSayWhatTheyLack) {
   EXPECT_LE(scans.counts().num_hidden, 12);
 }
 
+// Points at 20 m, at each of these elevations once in a degree.
+Payload MakeBareTurn(const std::vector<double>& elevations_deg) {
+  Writer data;
+  for (int column = 0; column < 360; ++column) {
+    for (const double elevation_deg : elevations_deg) {
+      const double level_m = 20.0 * std::cos(DegToRad(elevation_deg));
+      data.Number(static_cast<float>(level_m * std::cos(DegToRad(column)))).Number(static_cast<float>(-level_m * std::sin(DegToRad(column))));
+      data.Number(static_cast<float>(20.0 * std::sin(DegToRad(elevation_deg))));
+    }
+  }
+  return MakeCloud(Encoding::kRos1, 1, static_cast<std::uint32_t>(360 * elevations_deg.size()), 12, {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}},
+                   data.bytes);
+}
+
+TEST(CloudScans, WithoutRingsHaveBandsOfAllThatWasLearned) {
+  const auto flat = MakeBareTurn({0.0, 1.0, 2.0});
+  const auto tall = MakeBareTurn({-15.0, -5.0, 5.0, 15.0});
+  const auto taller = MakeBareTurn({-15.0, -5.0, 5.0, 15.0, 25.0});
+  CloudScans scans;
+  EXPECT_TRUE(scans.Learn(*ParsePointCloud(Encoding::kRos1, flat)));
+  EXPECT_TRUE(scans.Learn(*ParsePointCloud(Encoding::kRos1, tall)));
+  auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, tall), kMadeStampNs, "model");
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_NEAR(parts[0].elevation_rad.front(), DegToRad(-15.0), 1e-4);
+  EXPECT_NEAR(parts[0].elevation_rad.back(), DegToRad(15.0), 1e-4);
+  EXPECT_EQ(scans.counts().num_out_of_range + scans.counts().num_hidden, 0);
+  // What comes later outside of the bands is none of theirs.
+  parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, taller), kMadeStampNs, "model");
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_NEAR(parts[0].elevation_rad.back(), DegToRad(15.0), 1e-4);
+  EXPECT_EQ(scans.counts().num_out_of_range, 360);
+}
+
+// Lines that are no rings: the first cloud alone does not show how far they go.
+TEST(CloudScans, OfScatteredRingsHaveBandsOfAllThatWasLearned) {
+  const auto make = [](double highest_deg) {
+    Writer data;
+    for (int i = 0; i < 2000; ++i) {
+      const double elevation_rad = DegToRad(highest_deg * std::sin(0.7 * i));
+      const double azimuth_rad = DegToRad(0.02 * i);
+      data.Number(static_cast<float>(20.0 * std::cos(elevation_rad) * std::cos(azimuth_rad)));
+      data.Number(static_cast<float>(-20.0 * std::cos(elevation_rad) * std::sin(azimuth_rad)));
+      data.Number(static_cast<float>(20.0 * std::sin(elevation_rad))).Number(static_cast<std::uint16_t>(i % 4));
+    }
+    return MakeCloud(Encoding::kRos1, 1, 2000, 14, {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"line", 12, 4}}, data.bytes);
+  };
+  const auto low = make(5.0);
+  const auto high = make(20.0);
+  CloudScans scans;
+  scans.Learn(*ParsePointCloud(Encoding::kRos1, low));
+  scans.Learn(*ParsePointCloud(Encoding::kRos1, high));
+  const auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, high), kMadeStampNs, "model");
+  ASSERT_FALSE(parts.empty());
+  EXPECT_LT(parts[0].elevation_rad.front(), DegToRad(-19.0));
+  EXPECT_GT(parts[0].elevation_rad.back(), DegToRad(19.0));
+  EXPECT_EQ(scans.counts().num_out_of_range + scans.counts().num_no_ring, 0);
+}
+
+// A turn of 16 rings and 100 columns at 1 ms, with these times.
+template <typename T, typename TimeOf>
+Payload MakeTimedTurn(const std::string& field, std::uint8_t type, const TimeOf& time_of) {
+  Writer data;
+  for (int column = 0; column < 100; ++column) {
+    for (int ring = 0; ring < 16; ++ring) {
+      const double elevation_rad = DegToRad(2.0 * ring - 15.0);
+      const double azimuth_rad = kTwoPi * column / 100;
+      data.Number(static_cast<float>(20.0 * std::cos(elevation_rad) * std::cos(azimuth_rad)));
+      data.Number(static_cast<float>(-20.0 * std::cos(elevation_rad) * std::sin(azimuth_rad)));
+      data.Number(static_cast<float>(20.0 * std::sin(elevation_rad))).Number(static_cast<std::uint16_t>(ring));
+      data.Number(static_cast<T>(time_of(column, ring)));
+    }
+  }
+  return MakeCloud(Encoding::kRos1, 1, 1600, static_cast<std::uint32_t>(14 + sizeof(T)),
+                   {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"ring", 12, 4}, {field, 14, type}}, data.bytes);
+}
+
+TEST(CloudScans, AreNotMovedByAPointWithoutATime) {
+  const double stamp_s = static_cast<double>(kMadeStampNs / 1'000'000'000);
+  for (const double begin_s : {stamp_s, 5000.0}) {
+    for (const double bad_s : {0.0, static_cast<double>(NAN), 1e300, stamp_s + 3.0}) {
+      const auto bytes =
+          MakeTimedTurn<double>("timestamp", 8, [&](int column, int ring) { return column == 50 && ring == 3 ? bad_s : begin_s + 1e-3 * column; });
+      CloudScans scans;
+      const auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, bytes), kMadeStampNs, "model");
+      ASSERT_EQ(parts.size(), 1U);
+      EXPECT_NEAR(static_cast<double>(parts[0].utime_us - kMadeStampNs / 1000), 0.0, 2.0) << begin_s << " " << bad_s;
+      EXPECT_NEAR(static_cast<double>(parts[0].end_utime_us - parts[0].utime_us), 99'000.0, 2.0) << begin_s << " " << bad_s;
+      EXPECT_EQ(parts[0].num_turn_columns, 100);
+      EXPECT_EQ(scans.counts().num_no_time, 1);
+      EXPECT_EQ(scans.counts().num_hidden, 0);
+      EXPECT_EQ(scans.Remarks().size(), begin_s == 5000.0 ? 2U : 1U);  // another clock, and no reflectivity
+    }
+  }
+}
+
+TEST(CloudScans, OfTimesInAnotherUnitHaveNone) {
+  const auto microseconds = MakeTimedTurn<float>("time", 7, [](int column, int ring) { return 1000.0 * column + ring; });
+  const auto none = MakeTimedTurn<float>("time", 7, [](int, int) { return NAN; });
+  for (const auto& bytes : {microseconds, none}) {
+    CloudScans scans;
+    const auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, bytes), kMadeStampNs, "model");
+    ASSERT_EQ(parts.size(), 1U);
+    EXPECT_EQ(parts[0].utime_us, kMadeStampNs / 1000);
+    EXPECT_EQ(parts[0].end_utime_us, parts[0].utime_us);
+    EXPECT_EQ(scans.counts().num_times_refused, 1);
+    EXPECT_EQ(scans.counts().num_hidden, 0);
+    EXPECT_NE(scans.Remarks().at(0).find("1 clouds have times of points"), std::string::npos);
+  }
+}
+
 TEST(CloudScans, TakeAWiderUnitWhereAPointIsFartherThan131Metres) {
   Writer data;
   for (int i = 0; i < 40; ++i) data.Number(i == 7 ? 300.0F : 10.0F).Number(static_cast<float>(i) * 0.1F).Number(0.0F).Number(std::uint16_t{0});
