@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -72,6 +73,13 @@ TEST(RosMessage, OfCountsThatItCannotHoldIsNone) {
     EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, count, count, 16, {}, Payload(64))));
     EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 1, 4, count, {}, Payload(64))));
   }
+}
+
+TEST(RosMessage, OfNoPointsHasNoEndlessRows) {
+  EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 0x7FFFFFFFU, 0, 16, {}, {})));
+  EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 0, 0x7FFFFFFFU, 0, {}, {})));
+  EXPECT_TRUE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 1, 0, 16, {}, {})));
+  EXPECT_TRUE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 0, 0, 16, {}, {})));
 }
 
 TEST(RosSentences, SayAPositionToAHundredthOfAMillimetre) {
@@ -157,7 +165,7 @@ class Import : public ::testing::Test {
   void Run(const std::vector<Made>& messages, const TopicMap& map) {
     vlp16::Params params;
     LogMaker log(params, true, [this](Utime time, const bus::Channel& channel, Bytes bytes) {
-      EXPECT_GE(time, last_);
+      num_set_back_ += time < last_ ? 1 : 0;
       last_ = time;
       by_channel_[std::string(channel.name)].emplace_back(bytes.begin(), bytes.end());
     });
@@ -167,6 +175,8 @@ class Import : public ::testing::Test {
       import.Take({message.time_ns, &topic, message.bytes});
     }
     log.Finish();
+    num_late_ = log.num_late();
+    EXPECT_EQ(num_set_back_, expected_set_back_);
     tallies_ = import.tallies();
   }
 
@@ -180,6 +190,9 @@ class Import : public ::testing::Test {
   }
 
   Utime last_{};
+  int num_set_back_ = 0;
+  int expected_set_back_ = 0;
+  std::int64_t num_late_ = 0;
   std::map<std::string, std::vector<Payload>> by_channel_;
   std::map<std::string, TopicTally> tallies_;
 };
@@ -245,6 +258,62 @@ TEST_F(Import, CountsWhatIsNotOfItsType) {
   EXPECT_EQ(items[1].imu[0].specific_force_mps2[2], -9.8);
   EXPECT_EQ(items[1].imu[0].angular_velocity_radps[0], 0.01);
   EXPECT_EQ(items[1].imu[0].angular_velocity_radps[1], -0.02);
+}
+
+// By 100 s: what came before is out, marks stand between, and nothing is late.
+TEST_F(Import, BeginsAnewWhereTheClockWasSetBack) {
+  expected_set_back_ = 1;
+  constexpr std::int64_t kSetBackNs = 100'000'000'000;
+  std::vector<Made> messages;
+  for (const std::int64_t era_ns : {std::int64_t{0}, -kSetBackNs}) {
+    for (int i = 0; i < 5; ++i) {
+      const auto time_ns = kMadeStampNs + era_ns + i * 10'000'000LL;
+      messages.push_back({"/packets", "velodyne_msgs/VelodyneScan", time_ns, MakeVelodyneScan(Encoding::kRos1, 1, time_ns)});
+      messages.push_back({"/imu", "sensor_msgs/Imu", time_ns, MakeImu(Encoding::kRos1, time_ns)});
+    }
+  }
+  Run(messages, {{"/imu", {Use::kImu}}, {"/packets", {Use::kLidarPackets}}});
+  EXPECT_EQ(num_late_, 0);
+  std::vector<std::vector<std::int64_t>> times_us;
+  std::vector<std::int32_t> marks;
+  for (const auto& bytes : by_channel_["LIDAR_PACKETS"]) {
+    const auto bundle = bus::Decode<lidar_packets_t>(bytes).value();
+    times_us.push_back(bundle.host_utime_us);
+    marks.push_back(bundle.marks);
+  }
+  ASSERT_EQ(times_us.size(), 2U);
+  constexpr std::int32_t kBoth = std::int32_t{lidar_packets_t::MARK_START} | std::int32_t{lidar_packets_t::MARK_END};
+  EXPECT_EQ(marks, (std::vector<std::int32_t>{kBoth, kBoth}));
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(times_us[0].at(i), kMadeStampNs / 1000 + static_cast<std::int64_t>(i) * 10'000);
+    EXPECT_EQ(times_us[1].at(i), times_us[0].at(i) - kSetBackNs / 1000);
+  }
+  std::int64_t num_starts = 0;
+  std::int64_t num_samples = 0;
+  for (const auto& item : Navigation()) {
+    num_starts += item.kind == nav_raw_t::KIND_START ? 1 : 0;
+    num_samples += item.kind == nav_raw_t::KIND_IMU ? 1 : 0;
+  }
+  EXPECT_EQ(num_starts, 2);
+  EXPECT_EQ(num_samples, 10);
+}
+
+TEST_F(Import, CountsLinesThatAreLostAndRefusesTextWithoutEnd) {
+  const auto make = [](const std::string& text) { return Made{"/nmea", "nmea_msgs/Sentence", kMadeStampNs, MakeSentence(Encoding::kRos1, text)}; };
+  Run({make("$GPHDT,1.0,T\r\nnothing\r\n$" + std::string(400, 'x') + "\r\n$\x01\r\n$GPHDT,2.0,T\r\n"),
+       make("$GPHDT,1.0,T\n" + std::string(64 << 10, '$'))},
+      {{"/nmea", {Use::kSentences}}});
+  EXPECT_EQ(tallies_.at("/nmea").num_used, 1);
+  EXPECT_EQ(tallies_.at("/nmea").num_lines_lost, 3);
+  EXPECT_EQ(tallies_.at("/nmea").num_refused, 1);
+  EXPECT_EQ(Navigation().size(), 4U);
+}
+
+TEST_F(Import, RefusesTimesThatNoClockHas) {
+  for (const auto time_ns : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+    Run({{"/imu", "sensor_msgs/Imu", time_ns, MakeImu(Encoding::kRos1)}}, {{"/imu", {Use::kImu, TimeBasis::kRecorded}}});
+    EXPECT_EQ(tallies_.at("/imu").num_refused, 1);
+  }
 }
 
 TEST(ImportSource, OfATopicIsAWordOfLimitedLength) {
