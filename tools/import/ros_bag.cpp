@@ -168,7 +168,10 @@ bool RosBag::TakeChunk(const Record& record) {
   const bool is_cut = record.data_offset + record.num_data_bytes > source_->size();
   if (record.num_data_bytes > kMaxPieceBytes) {
     losses_.Damage(position_, "chunk of " + std::to_string(record.num_data_bytes) + " bytes is larger than is read");
-    if (!is_cut) return true;
+    if (!is_cut) {
+      losses_.num_bytes_skipped += static_cast<std::int64_t>(record.data_offset + record.num_data_bytes - position_);
+      return true;
+    }
   }
   losses_.is_cut = losses_.is_cut || is_cut;
   auto packed = ReadBytes(*source_, record.data_offset, std::min<std::uint64_t>(record.num_data_bytes, kMaxPieceBytes));
