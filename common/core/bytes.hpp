@@ -19,6 +19,11 @@ constexpr std::uint32_t ReadU32LittleEndian(Bytes bytes, std::size_t offset) {
   return static_cast<std::uint32_t>(ReadU16LittleEndian(bytes, offset)) | static_cast<std::uint32_t>(ReadU16LittleEndian(bytes, offset + 2)) << 16;
 }
 
+/// Precondition: offset + 8 <= bytes.size().
+constexpr std::uint64_t ReadU64LittleEndian(Bytes bytes, std::size_t offset) {
+  return static_cast<std::uint64_t>(ReadU32LittleEndian(bytes, offset)) | static_cast<std::uint64_t>(ReadU32LittleEndian(bytes, offset + 4)) << 32;
+}
+
 /// Precondition: offset + 2 <= bytes.size().
 constexpr void WriteU16LittleEndian(std::span<std::uint8_t> bytes, std::size_t offset, std::uint16_t value) {
   bytes[offset] = static_cast<std::uint8_t>(value & 0xFF);

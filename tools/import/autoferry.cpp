@@ -22,18 +22,20 @@ constexpr double kMaxPlaceM = 1e5;  // from the origin
 constexpr double kMaxTimeS = 4e9;   // the year 2096
 constexpr std::int64_t kPosePeriodUs = 20'000;
 constexpr std::int64_t kLeadUs = 1'000'000;  // POSE before the first scan
+constexpr std::int64_t kMaxFerryStepUs = 60'000'000;
+constexpr std::int64_t kMaxFerrySpanUs = 86'400'000'000;
 
 json ReadJson(const std::filesystem::path& file) { return json::parse(ReadFileBytes(file)); }
 
 double NumberOf(const json& value, double greatest) {
   const double number = value.get<double>();
-  if (!(std::abs(number) <= greatest)) throw std::runtime_error("a number is out of range: " + value.dump());
+  if (!(std::abs(number) <= greatest)) throw std::runtime_error("a number is out of range");
   return number;
 }
 
 std::int64_t TimeOf(const json& value) {
   const double time_s = NumberOf(value, kMaxTimeS);
-  if (time_s < 0.0) throw std::runtime_error("a time before 1970: " + value.dump());
+  if (time_s < 0.0) throw std::runtime_error("a time before 1970");
   return std::llround(time_s * 1e6);
 }
 
@@ -46,7 +48,7 @@ std::vector<Eigen::Vector2d> DetectionsOf(const json& measurement) {
   const auto& north = measurement.at(0);
   const auto& east = measurement.at(1);
   if (measurement.size() != 2 || north.size() != east.size() || north.is_array() != east.is_array()) {
-    throw std::runtime_error("a measurement is neither [north, east] nor [[north ...], [east ...]]: " + measurement.dump());
+    throw std::runtime_error("a measurement is neither [north, east] nor [[north ...], [east ...]]");
   }
   if (!north.is_array()) return {PlaceOf(north, east)};
   for (std::size_t i = 0; i < north.size(); ++i) detections_m.push_back(PlaceOf(north[i], east[i]));
@@ -62,6 +64,24 @@ auto Named(const std::filesystem::path& file, const Read& read) {
     const std::string reason = error.what();
     throw std::runtime_error(reason.starts_with(file.string()) ? reason : file.string() + ": " + reason);
   }
+}
+
+// The message of a parser, or our own, about a scan. Its text is not told: it may be long, and deeper than can be written.
+template <typename Read>
+auto OfScan(std::int64_t utime_us, const Read& read) {
+  try {
+    return read();
+  } catch (const std::exception& error) {
+    throw std::runtime_error("scan at " + std::to_string(static_cast<double>(utime_us) * 1e-6) + " s: " + error.what());
+  }
+}
+
+// Poses stand at every 20 ms between scans: a few scans far apart must not cost the memory of years.
+std::string TimeFaultOf(const std::vector<FerryScan>& scans, std::int64_t utime_us) {
+  if (scans.empty()) return "";
+  if (utime_us <= scans.back().utime_us) return "time does not grow";
+  if (utime_us - scans.back().utime_us > kMaxFerryStepUs) return "more than 60 s behind the scan before";
+  return utime_us - scans.front().utime_us > kMaxFerrySpanUs ? "more than a day behind the first scan" : "";
 }
 
 // The ferry between scans.
@@ -180,9 +200,11 @@ std::vector<FerryScan> ReadFerryScans(const std::filesystem::path& file) {
     for (const auto& one : ReadJson(file)) {
       FerryScan scan;
       scan.utime_us = TimeOf(one.at("time"));
-      if (!scans.empty() && scan.utime_us <= scans.back().utime_us) throw std::runtime_error("time does not grow at " + one.at("time").dump());
-      scan.own_m = PlaceOf(one.at("ownshipPosition").at(0), one.at("ownshipPosition").at(1));
-      scan.detections_m = DetectionsOf(one.at("measurement"));
+      OfScan(scan.utime_us, [&] {
+        if (const auto fault = TimeFaultOf(scans, scan.utime_us); !fault.empty()) throw std::runtime_error(fault);
+        scan.own_m = PlaceOf(one.at("ownshipPosition").at(0), one.at("ownshipPosition").at(1));
+        scan.detections_m = DetectionsOf(one.at("measurement"));
+      });
       for (auto& detection_m : scan.detections_m) detection_m += scan.own_m;
       scans.push_back(std::move(scan));
     }

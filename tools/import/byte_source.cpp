@@ -44,6 +44,15 @@ std::size_t MemorySource::Read(std::uint64_t offset, std::span<std::uint8_t> out
   return count;
 }
 
+Bytes SearchWindow::From(const ByteSource& source, std::uint64_t offset) {
+  const bool is_inside = !bytes_.empty() && offset >= begin_ && offset < end();
+  if (!is_inside) {
+    begin_ = offset;
+    bytes_ = ReadBytes(source, offset, kStepBytes + most_bytes_);
+  }
+  return Bytes(bytes_).subspan(std::min(static_cast<std::size_t>(offset - begin_), bytes_.size()));
+}
+
 std::vector<std::uint8_t> ReadBytes(const ByteSource& source, std::uint64_t offset, std::uint64_t count) {
   const std::uint64_t left = offset < source.size() ? source.size() - offset : 0;
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::min(count, left)));

@@ -49,6 +49,26 @@ class MemorySource final : public ByteSource {
   std::vector<std::uint8_t> bytes_;
 };
 
+/// A stretch of a recording that is looked through for something. It is kept, so that each of many short ways through it does not read it anew.
+class SearchWindow {
+ public:
+  static constexpr std::size_t kStepBytes = std::size_t{1} << 20;
+
+  /// @param most_bytes  longest thing that is looked for
+  explicit SearchWindow(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  /// @return the bytes from `offset` on, to the end of the stretch and further by the longest thing, or to the end of the recording
+  Bytes From(const ByteSource& source, std::uint64_t offset);
+
+  /// Where the next stretch begins: what begins before it was in this one as a whole.
+  std::uint64_t end() const { return begin_ + kStepBytes; }
+
+ private:
+  std::size_t most_bytes_;
+  std::uint64_t begin_ = 0;
+  std::vector<std::uint8_t> bytes_;
+};
+
 /// As many bytes from `offset` on as there are, `count` at most. Memory is taken as they come, so a false count costs no more than the file has.
 std::vector<std::uint8_t> ReadBytes(const ByteSource& source, std::uint64_t offset, std::uint64_t count);
 

@@ -1,6 +1,7 @@
 #include "tools/import/cloud_points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <initializer_list>
@@ -78,37 +79,82 @@ class PointTimes {
 
   bool is_absolute() const { return is_absolute_; }
 
-  std::int64_t Of(Bytes point, bool is_big_endian) const {
-    constexpr double kNsPerSecond = 1e9;
-    constexpr double kLeastNs = 1e14;     // seconds since 1970 are fewer by far, nanoseconds more
-    constexpr double kMostTimeNs = 4e18;  // of an int64_t
-    if (field_ == nullptr) return 0;
-    const double value = ValueOf(*field_, point, is_big_endian);
-    if (!(std::abs(value) < kMostTimeNs)) return 0;
-    if (!IsFloat(*field_) || std::abs(value) > kLeastNs) return static_cast<std::int64_t>(value) - (is_absolute_ ? stamp_ns_ : 0);
-    if (!is_absolute_) return std::llround(std::clamp(value * kNsPerSecond, -kMostTimeNs, kMostTimeNs));
-    // Whole seconds apart, so that none of the digits of the double is lost.
-    const double whole_s = std::floor(value);
-    if (std::abs(whole_s) * kNsPerSecond > kMostTimeNs) return 0;
-    return static_cast<std::int64_t>(whole_s) * 1'000'000'000 + std::llround((value - whole_s) * kNsPerSecond) - stamp_ns_;
+  // nullopt where the point has none. Half of what an int64_t holds at most, so that differences do not overflow.
+  std::optional<std::int64_t> Of(Bytes point, bool is_big_endian) const {
+    const auto time_ns = NsOf(point, is_big_endian);
+    return time_ns && *time_ns >= -kMostTimeNs && *time_ns <= kMostTimeNs ? time_ns : std::nullopt;
   }
 
  private:
+  static constexpr std::int64_t kMostTimeNs = 4'000'000'000'000'000'000;
+
+  std::optional<std::int64_t> NsOf(Bytes point, bool is_big_endian) const {
+    constexpr double kNsPerSecond = 1e9;
+    constexpr double kLeastNs = 1e14;  // seconds since 1970 are fewer by far, nanoseconds more
+    constexpr double kMostNs = 4e18;
+    if (field_ == nullptr) return 0;
+    const double value = ValueOf(*field_, point, is_big_endian);
+    if (!(std::abs(value) < kMostNs)) return std::nullopt;
+    if (!IsFloat(*field_) || std::abs(value) > kLeastNs) return static_cast<std::int64_t>(value) - (is_absolute_ ? stamp_ns_ : 0);
+    // Whole seconds apart, so that none of the digits of the double is lost.
+    const double whole_s = std::floor(value);
+    if (std::abs(whole_s) * kNsPerSecond > kMostNs) return std::nullopt;
+    return static_cast<std::int64_t>(whole_s) * 1'000'000'000 + std::llround((value - whole_s) * kNsPerSecond) - (is_absolute_ ? stamp_ns_ : 0);
+  }
+
   std::int64_t stamp_ns_;
   const RosPointField* field_;
   bool is_absolute_ = false;
 };
 
+// nullopt where no point has a time.
+std::optional<std::int64_t> MedianTimeNs(const RingCloud& cloud) {
+  std::vector<std::int64_t> times_ns;
+  times_ns.reserve(cloud.points.size());
+  for (const auto& point : cloud.points) {
+    if (point.has_time) times_ns.push_back(point.time_ns);
+  }
+  if (times_ns.empty()) return std::nullopt;
+  const auto middle = times_ns.begin() + static_cast<std::ptrdiff_t>(times_ns.size() / 2);
+  std::ranges::nth_element(times_ns, middle);
+  return *middle;
+}
+
+void RefuseTimes(RingCloud& cloud) {
+  cloud.has_times = false;
+  cloud.are_times_refused = true;
+  for (auto& point : cloud.points) point.time_ns = 0;
+}
+
+// Takes away times that are none, so that one of them does not move the others. @return the least and greatest that stay; nullopt: there are none
+std::optional<std::array<std::int64_t, 2>> MendTimes(RingCloud& cloud) {
+  const auto median_ns = MedianTimeNs(cloud);
+  std::int64_t first_ns = median_ns.value_or(0);
+  std::int64_t last_ns = first_ns;
+  for (auto& point : cloud.points) {
+    point.has_time = median_ns && point.has_time && std::abs(point.time_ns - *median_ns) <= kMaxPointTimeOffNs;
+    cloud.num_no_time += point.has_time ? 0 : 1;
+    if (!point.has_time) continue;
+    first_ns = std::min(first_ns, point.time_ns);
+    last_ns = std::max(last_ns, point.time_ns);
+  }
+  if (!median_ns || cloud.num_no_time > std::max<std::int64_t>(1, std::ssize(cloud.points) / kMaxNoTimeShare)) return std::nullopt;
+  // Drivers write firing by firing, or ring by ring.
+  const auto first_timed = std::ranges::find_if(cloud.points, &RingPoint::has_time);
+  auto before_ns = first_timed->time_ns;
+  for (auto& point : cloud.points) before_ns = point.time_ns = point.has_time ? point.time_ns : before_ns;
+  return std::array{first_ns, last_ns};
+}
+
 // A sensor that has no time of day, or another one: the first point is taken to be of the time of the stamp.
 void MendClock(RingCloud& cloud) {
-  constexpr std::int64_t kMaxOffNs = 1'000'000'000;
   if (!cloud.has_times || cloud.points.empty()) return;
-  const auto [first, last] = std::ranges::minmax_element(cloud.points, {}, &RingPoint::time_ns);
-  const auto first_ns = first->time_ns;
-  const auto last_ns = last->time_ns;
-  if (first_ns >= -kMaxOffNs && last_ns <= kMaxOffNs) return;
+  const auto span_ns = MendTimes(cloud);
+  if (!span_ns) return RefuseTimes(cloud);
+  const auto [first_ns, last_ns] = *span_ns;
+  if (first_ns >= -kMaxPointTimeOffNs && last_ns <= kMaxPointTimeOffNs) return;
   cloud.is_clock_other = true;
-  for (auto& point : cloud.points) point.time_ns = std::min(point.time_ns - first_ns, kMaxOffNs);
+  for (auto& point : cloud.points) point.time_ns -= first_ns;
 }
 
 }  // namespace
@@ -159,7 +205,9 @@ std::optional<RingCloud> ToRingCloud(const RosPointCloud& cloud, std::string& wh
       made.azimuth_rad = WrapTo2Pi(-Atan2(y_m, x_m));
       made.level_m = level_m;
       made.z_m = z_m;
-      made.time_ns = times.Of(point, cloud.is_big_endian);
+      const auto time_ns = times.Of(point, cloud.is_big_endian);
+      made.has_time = time_ns.has_value();
+      made.time_ns = time_ns.value_or(0);
       made.ring = static_cast<std::int32_t>(number);
       made.row = row;
       made.column = column;

@@ -16,6 +16,7 @@ struct RingPoint {
   double level_m = 0.0;      // distance from the z axis
   double z_m = 0.0;
   std::int64_t time_ns = 0;  // since the stamp of the cloud; 0 where it has no times
+  bool has_time = true;      // whether it is its own; else that of the last point before it that has one
   std::int32_t ring = 0;     // as the driver counts; of a cloud without rings its row, or kNoRing
   std::int32_t row = 0;      // place in the cloud
   std::int32_t column = 0;
@@ -33,12 +34,16 @@ struct RingCloud {
   bool has_reflectivity = false;
   bool is_clock_other = false;        // stamps of points are more than a second off the cloud's: only their differences count
   std::int64_t num_empty = 0;         // no return: at the origin, or not finite
+  bool are_times_refused = false;     // more than a few are no times of one turn, so has_times is false
   std::int64_t num_out_of_range = 0;  // beyond kMaxImportRangeM, or of a ring above kMaxImportRings
+  std::int64_t num_no_time = 0;       // in a cloud with times: not finite, or more than a second off the median
 };
 
 inline constexpr double kMaxImportRangeM = 600.0;
 inline constexpr double kMinImportRangeM = 0.01;  // nearer is how some drivers say "no return"
 inline constexpr std::int32_t kMaxImportRings = 128;
+inline constexpr std::int64_t kMaxPointTimeOffNs = 1'000'000'000;  // of a point from the median of its cloud
+inline constexpr std::int64_t kMaxNoTimeShare = 100;               // one point in so many may lack a time, and one at least
 
 /// Fields, by name: x y z; `ring`, `line` or `channel`; `time` (s since the stamp, Velodyne), `t` or `offset_time` (ns since the stamp, Ouster),
 /// `timestamp` (s or ns since 1970: Hesai, RoboSense, Livox); `reflectivity` or `intensity`.

@@ -23,6 +23,8 @@ constexpr double kMaxCloudCount = std::numeric_limits<std::uint16_t>::max();
 constexpr double kMaxRingScatter = 0.01;
 constexpr double kMaxOriginM = 0.3;
 constexpr double kLongestScanNs = 2e9;
+constexpr std::size_t kNumElevations = 18'000;  // from straight down to straight up, 0.01 deg each
+constexpr double kMinBandsRad = 1e-3;           // all bands together
 
 // Splits a scan into messages that fit.
 std::vector<lidar_scan_t> SplitScan(const lidar_scan_t& scan) {
@@ -61,17 +63,31 @@ double RangeUnitFor(double farthest_m) { return kCloudRangeUnitM * std::max(1.0,
 
 }  // namespace
 
-void CloudScans::Learn(const RosPointCloud& cloud) {
+bool CloudScans::Learn(const RosPointCloud& cloud) {
   std::string why;
-  auto points = ToRingCloud(cloud, why);
-  if (!points) return;
-  ++num_learned_;
-  if (has_rings_ && !points->has_rings) has_rings_ = false;
-  if (!has_rings_ && !bands_rad_) LearnBands(*points);
-  MendRings(*points);
+  const auto points = ToRingCloud(cloud, why);
+  if (is_settled_ || !points || points->points.empty()) return false;
+  has_rings_ = has_rings_ && points->has_rings;
+  AddElevations(*points);
   Add(*points);
-  if (!has_rings_) return;
-  // What is called a ring may be another count: lines of sensors that do not spin.
+  return true;
+}
+
+void CloudScans::AddElevations(const RingCloud& cloud) {
+  elevations_.resize(kNumElevations);
+  for (const auto& point : cloud.points) {
+    const double elevation_rad = Atan2(point.z_m, point.level_m);
+    learned_rad_ = {std::min(learned_rad_[0], elevation_rad), std::max(learned_rad_[1], elevation_rad)};
+    const double place = (elevation_rad / kPi + 0.5) * static_cast<double>(kNumElevations);
+    auto& sum = elevations_[std::min(static_cast<std::size_t>(std::max(place, 0.0)), kNumElevations - 1)];
+    sum.num += 1.0;
+    sum.level += point.level_m;
+    sum.z += point.z_m;
+  }
+}
+
+// What is called a ring may be another count: lines of sensors that do not spin.
+bool CloudScans::AreRingsScattered() const {
   int num_rings = 0;
   int num_scattered = 0;
   for (const auto& sum : sums_) {
@@ -81,34 +97,45 @@ void CloudScans::Learn(const RosPointCloud& cloud) {
     ++num_rings;
     num_scattered += rest_m2 > kMaxRingScatter * kMaxRingScatter * sum.level_level ? 1 : 0;
   }
-  if (2 * num_scattered <= num_rings) return;
-  has_rings_ = false;
-  sums_ = {};
-  LearnBands(*points);
-  MendRings(*points);
-  Add(*points);
+  return 2 * num_scattered > num_rings;
 }
 
-void CloudScans::LearnBands(const RingCloud& cloud) {
-  if (cloud.points.empty()) return;
-  double lowest_rad = kPi;
-  double highest_rad = -kPi;
-  for (const auto& point : cloud.points) {
-    const double elevation_rad = Atan2(point.z_m, point.level_m);
-    lowest_rad = std::min(lowest_rad, elevation_rad);
-    highest_rad = std::max(highest_rad, elevation_rad);
+// From here on rings or bands stay what they are.
+void CloudScans::Settle() {
+  is_settled_ = true;
+  has_rings_ = has_rings_ && !AreRingsScattered();
+  if (!has_rings_) CutBands();
+  elevations_ = {};
+}
+
+void CloudScans::CutBands() {
+  const auto [lowest_rad, highest_rad] = learned_rad_;
+  // Half a band more on each side: places of points are rounded, and parallax moves near ones.
+  const double margin_rad = std::max(highest_rad - lowest_rad, kMinBandsRad) / (2.0 * kNumCloudBands);
+  bands_rad_ = {lowest_rad - margin_rad, highest_rad + margin_rad};
+  sums_ = {};
+  for (const auto& elevation : elevations_) {
+    if (elevation.num == 0.0) continue;
+    const auto band = std::clamp(BandOf(Atan2(elevation.z, elevation.level)), 0, kNumCloudBands - 1);
+    auto& sum = sums_[static_cast<std::size_t>(band)];
+    sum.num += elevation.num;
+    sum.level += elevation.level;
+    sum.z += elevation.z;
   }
-  bands_rad_ = {lowest_rad, std::max(highest_rad, lowest_rad + 1e-3)};
+}
+
+// Outside of all bands it is less than 0, or kNumCloudBands or more.
+std::int32_t CloudScans::BandOf(double elevation_rad) const {
+  const auto [lowest_rad, highest_rad] = *bands_rad_;
+  return static_cast<std::int32_t>(std::floor((elevation_rad - lowest_rad) / (highest_rad - lowest_rad) * kNumCloudBands));
 }
 
 // Of a sensor without rings bands of equal height stand for them.
-void CloudScans::MendRings(RingCloud& cloud) const {
-  if (has_rings_ || !bands_rad_) return;
-  const auto [lowest_rad, highest_rad] = *bands_rad_;
-  for (auto& point : cloud.points) {
-    const double part = (Atan2(point.z_m, point.level_m) - lowest_rad) / (highest_rad - lowest_rad);
-    point.ring = std::clamp(static_cast<std::int32_t>(std::floor(part * kNumCloudBands)), 0, kNumCloudBands - 1);
-  }
+void CloudScans::MendRings(RingCloud& cloud) {
+  if (has_rings_) return;
+  for (auto& point : cloud.points) point.ring = BandOf(Atan2(point.z_m, point.level_m));
+  const auto num_outside = std::erase_if(cloud.points, [](const RingPoint& point) { return point.ring < 0 || point.ring >= kNumCloudBands; });
+  counts_.num_out_of_range += static_cast<std::int64_t>(num_outside);
 }
 
 void CloudScans::Add(const RingCloud& cloud) {
@@ -238,16 +265,21 @@ std::vector<lidar_scan_t> CloudScans::Refuse(std::string reason) {
 }
 
 std::vector<lidar_scan_t> CloudScans::Convert(const RosPointCloud& cloud, std::int64_t stamp_ns, const std::string& model) {
-  if (num_learned_ == 0) Learn(cloud);
   std::string why;
   auto points = ToRingCloud(cloud, why);
   if (!points) return Refuse(why);
-  has_times_ = has_times_ && points->has_times;
+  has_times_ = has_times_ && (points->has_times || points->are_times_refused);
+  counts_.num_times_refused += points->are_times_refused ? 1 : 0;
+  counts_.num_no_time += points->has_times ? points->num_no_time : 0;
   has_reflectivity_ = has_reflectivity_ && points->has_reflectivity;
   is_clock_other_ = is_clock_other_ || points->is_clock_other;
   counts_.num_points += std::ssize(points->points) + points->num_empty + points->num_out_of_range;
   counts_.num_empty += points->num_empty;
   counts_.num_out_of_range += points->num_out_of_range;
+  if (!is_settled_) {
+    if (elevations_.empty() && !Learn(cloud)) return Refuse("has too few points to know any ring");
+    Settle();
+  }
   MendRings(*points);
   const auto beams = SortIntoBeams(*points);
   if (beams.empty()) return Refuse("has too few points to know any ring");
@@ -276,6 +308,10 @@ std::vector<std::string> CloudScans::Remarks() const {
                       " bands of equal height stand for them, and the elevation of a point is that of its band");
   }
   if (!has_times_) remarks.emplace_back("the clouds have no times of points: each scan has one time, that of its cloud");
+  if (counts_.num_times_refused > 0) {
+    remarks.push_back(std::to_string(counts_.num_times_refused) +
+                      " clouds have times of points that are more than a second apart, or are none: each of their scans has one time");
+  }
   if (is_clock_other_) remarks.emplace_back("the times of points are of another clock than the cloud's: only their differences are used");
   if (!has_reflectivity_) remarks.emplace_back("the clouds have no reflectivity: it is 0");
   if (counts_.num_refused > 0) remarks.push_back(std::to_string(counts_.num_refused) + " clouds give no scan; the last one " + last_refusal_);

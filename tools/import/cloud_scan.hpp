@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/angles.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "tools/import/cloud_columns.hpp"
 #include "tools/import/cloud_points.hpp"
@@ -16,11 +17,13 @@ namespace lookout::importer {
 /// What became of points; sums over all clouds.
 struct CloudCounts {
   std::int64_t num_points = 0;
-  std::int64_t num_empty = 0;         // no return
-  std::int64_t num_out_of_range = 0;  // RingCloud
-  std::int64_t num_hidden = 0;        // another point of the same ring and firing is nearer: second returns, or the end of a turn over its begin
-  std::int64_t num_no_ring = 0;       // of a ring that is not known: fewer than kMinRingPoints so far
-  std::int64_t num_refused = 0;       // clouds: no fields x y z, or more columns and rings than a scan may have
+  std::int64_t num_empty = 0;          // no return
+  std::int64_t num_out_of_range = 0;   // RingCloud; or above or below the bands
+  std::int64_t num_no_time = 0;        // RingCloud; of clouds whose times are used
+  std::int64_t num_hidden = 0;         // another point of the same ring and firing is nearer: second returns, or the end of a turn over its begin
+  std::int64_t num_no_ring = 0;        // of a ring that is not known: fewer than kMinRingPoints so far
+  std::int64_t num_refused = 0;        // clouds: no fields x y z, or more columns and rings than a scan may have
+  std::int64_t num_times_refused = 0;  // clouds: RingCloud::are_times_refused
 };
 
 /// Makes scans. The beams of the sensor (elevation and height of origin of each ring) are learned from the clouds that it is shown, since a cloud
@@ -29,8 +32,9 @@ class CloudScans {
  public:
   static constexpr std::int64_t kMinRingPoints = 20;
 
-  /// Learns from a cloud of the beginning; some ten are enough.
-  void Learn(const RosPointCloud& cloud);
+  /// Learns from a cloud of the beginning, before the first Convert; some ten are enough.
+  /// @return whether it has points
+  bool Learn(const RosPointCloud& cloud);
 
   /// @param name     of the sensor, for LIDAR_SCAN.model
   /// @param stamp_ns of the cloud, as it is to be used
@@ -54,10 +58,19 @@ class CloudScans {
     double origin_height_m = 0.0;
   };
 
+  // Of points of one elevation, but for a hundredth of a degree.
+  struct ElevationSums {
+    double num = 0.0, level = 0.0, z = 0.0;
+  };
+
   void Add(const RingCloud& cloud);
-  void MendRings(RingCloud& cloud) const;
+  void AddElevations(const RingCloud& cloud);
+  bool AreRingsScattered() const;
+  void Settle();
+  void CutBands();
+  std::int32_t BandOf(double elevation_rad) const;
+  void MendRings(RingCloud& cloud);
   std::vector<Beam> Beams() const;
-  void LearnBands(const RingCloud& cloud);
   std::vector<Beam> SortIntoBeams(RingCloud& cloud);
   static std::array<std::int32_t, kMaxImportRings> PlacesOf(const std::vector<Beam>& beams);
   static lidar_scan_t HeadOf(const std::vector<Beam>& beams, const CloudColumns& columns, std::int64_t stamp_ns);
@@ -65,8 +78,10 @@ class CloudScans {
   std::vector<lidar_scan_t> Refuse(std::string reason);
 
   std::array<RingSums, kMaxImportRings> sums_{};
-  std::optional<std::array<double, 2>> bands_rad_;  // of a sensor without rings: lowest and highest elevation
-  std::int64_t num_learned_ = 0;
+  std::vector<ElevationSums> elevations_;           // while learning: bands are cut when all that is learned is known
+  std::array<double, 2> learned_rad_{kPi, -kPi};    // lowest and highest elevation
+  std::optional<std::array<double, 2>> bands_rad_;  // of a sensor without rings: where they begin and end
+  bool is_settled_ = false;
   std::int64_t next_seq_ = 0;
   CloudCounts counts_;
   std::string last_refusal_;

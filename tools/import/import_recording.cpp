@@ -87,10 +87,31 @@ class RecordingReader {
 
 // Messages of LCM as lookout-export has put them into an MCAP file: the log again.
 bool CopyLcm(const RecordingRequest& request, log::LogOutput& output, std::ostream& notes) {
-  return RecordingReader(request.files, notes).ForEach([&](const RecordedMessage& message) {
-    if (message.topic->encoding != Encoding::kLcm || message.topic->name.empty() || message.topic->name.size() > bus::kMaxLogChannelBytes) return;
+  std::int64_t num_written = 0;
+  std::int64_t num_other = 0;
+  std::int64_t num_bad_name = 0;
+  const bool is_whole = RecordingReader(request.files, notes).ForEach([&](const RecordedMessage& message) {
+    const bool is_lcm = message.topic->encoding == Encoding::kLcm;
+    const bool has_name = !message.topic->name.empty() && message.topic->name.size() <= bus::kMaxLogChannelBytes;
+    num_other += is_lcm ? 0 : 1;
+    num_bad_name += is_lcm && !has_name ? 1 : 0;
+    if (!is_lcm || !has_name) return;
+    ++num_written;
     output.Write(Utime(std::chrono::microseconds(message.time_ns / 1000)), message.topic->name, message.bytes);
   });
+  if (num_other > 0) notes << fmt::format("lookout-import: {} messages of other encodings are not used beside those of LCM\n", num_other);
+  if (num_bad_name > 0) notes << fmt::format("lookout-import: {} messages of LCM are lost: the names of their channels are too long\n", num_bad_name);
+  if (num_written == 0) throw std::runtime_error(request.files.front().string() + ": holds no message of LCM that can be read");
+  return is_whole && num_bad_name == 0;
+}
+
+bool HasLcm(const Topics& topics) {
+  return std::ranges::any_of(topics, [](const auto& topic) { return topic.second.encoding == Encoding::kLcm && topic.second.num_messages != 0; });
+}
+
+// Whether the index does not say if there are messages that decide how the file is read.
+bool IsLcmUncounted(const Topics& topics) {
+  return std::ranges::any_of(topics, [](const auto& topic) { return topic.second.encoding == Encoding::kLcm && topic.second.num_messages < 0; });
 }
 
 bool IsUsed(const TopicMap& map, std::initializer_list<Use> uses) {
@@ -105,8 +126,9 @@ std::string FileNames(const std::vector<fs::path>& files) {
 
 std::string TallyText(const std::string& topic, const TopicTally& tally) {
   auto text = fmt::format("{}: {} messages used", Printable(topic), tally.num_used);
-  if (tally.num_refused > 0) text += fmt::format(", {} refused: not of their type, or of no time", tally.num_refused);
+  if (tally.num_refused > 0) text += fmt::format(", {} refused: not of their type, too long, or of no time", tally.num_refused);
   if (tally.num_empty > 0) text += fmt::format(", {} without what is looked for", tally.num_empty);
+  if (tally.num_lines_lost > 0) text += fmt::format(", {} lines lost: without a start, too long, not printable, or cut off", tally.num_lines_lost);
   if (tally.num_other_time > 0) text += fmt::format(", {} by the time of recording: their stamps are more than 10 s off", tally.num_other_time);
   return text;
 }
@@ -120,6 +142,8 @@ std::vector<std::string> ResultLines(const RosImport& import, const LogMaker& lo
     lines.push_back(
         fmt::format("points: {}, of them {} without a return, {} out of range, {} hidden by a nearer one of their cell, {} of no known ring",
                     counts.num_points, counts.num_empty, counts.num_out_of_range, counts.num_hidden, counts.num_no_ring));
+    if (counts.num_no_time > 0)
+      lines.push_back(fmt::format("points: {} without a time of their own, which have that of the point before", counts.num_no_time));
   }
   for (const auto& remark : import.clouds().Remarks()) lines.push_back(remark);
   for (const auto& counter : log.counters()) {
@@ -136,7 +160,7 @@ Topics TopicsOf(const std::vector<fs::path>& files) {
   for (const auto& file : files) {
     const auto recording = OpenKnown(file);
     auto of_file = recording->IndexedTopics();
-    if (of_file.empty()) of_file = CountTopics(*recording);
+    if (of_file.empty() || IsLcmUncounted(of_file)) of_file = CountTopics(*recording);
     for (auto& [number, topic] : of_file) topics.emplace(static_cast<std::uint32_t>(topics.size()), std::move(topic));
   }
   return topics;
@@ -144,7 +168,7 @@ Topics TopicsOf(const std::vector<fs::path>& files) {
 
 bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, std::ostream& notes) {
   const auto topics = TopicsOf(request.files);
-  if (std::ranges::any_of(topics, [](const auto& topic) { return topic.second.encoding == Encoding::kLcm; })) return CopyLcm(request, output, notes);
+  if (HasLcm(topics)) return CopyLcm(request, output, notes);
   const auto map = request.topic_map_file ? ParseTopicMap(config::ReadConfigFile(*request.topic_map_file), request.topic_map_file->string(), topics)
                                           : GuessTopics(topics);
   const auto map_text = TopicMapText(topics, map);

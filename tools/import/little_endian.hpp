@@ -9,11 +9,6 @@
 
 namespace lookout::importer {
 
-/// Precondition: offset + 8 <= bytes.size().
-constexpr std::uint64_t ReadU64LittleEndian(Bytes bytes, std::size_t offset) {
-  return static_cast<std::uint64_t>(ReadU32LittleEndian(bytes, offset)) | static_cast<std::uint64_t>(ReadU32LittleEndian(bytes, offset + 4)) << 32;
-}
-
 /// Reads from the front on. Behind the first number that is not there everything is 0 and empty, and is_good() is false.
 class FieldsFromFront {
  public:

@@ -40,10 +40,15 @@ void LogMaker::ReleaseUntil(Utime until) {
 }
 
 void LogMaker::Release(Utime time, const ImportItem& item) {
-  const bool is_late = released_ && time < *released_ && !std::exchange(was_set_back_, false);
-  if (is_late) {
+  const bool is_before = released_ && time < *released_;
+  const bool is_set_back = std::exchange(was_set_back_, false) && is_before;
+  if (is_before && !is_set_back) {
     ++num_late_;
   } else {
+    // A bundle is of one clock, and the first one after it has a start mark.
+    if (is_set_back) {
+      if (const auto bundle = bundler_.Finish(*released_)) WriteBundle(*bundle);
+    }
     released_ = time;
     if (const auto bundle = bundler_.AdvanceTo(time)) WriteBundle(*bundle);
     if (has_navigation_) WriteNavigation(sequencer_.AdvanceTo(time));

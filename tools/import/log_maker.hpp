@@ -44,7 +44,7 @@ class LogMaker {
 
   void Add(Utime time, ImportItem item);
 
-  /// What is recorded has come so far.
+  /// What is recorded has come so far; to be said before what is recorded then is added.
   void AdvanceTo(Utime recorded);
 
   /// End of the recording: the rest, and the end marks.

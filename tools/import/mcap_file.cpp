@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -19,7 +18,8 @@ namespace {
 using std::string_view_literals::operator""sv;
 
 constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n"sv;
-constexpr std::size_t kMcapHeadBytes = 9;  // of a record: opcode, length
+constexpr std::size_t kMcapHeadBytes = 9;                                                    // of a record: opcode, length
+constexpr std::size_t kMostMcapChunkHeadBytes = kMcapHeadBytes + 8 + 8 + 8 + 4 + 4 + 4 + 8;  // with the longest name of a compression
 
 enum McapOp : std::uint8_t {
   kMcapFooter = 0x02,
@@ -72,6 +72,8 @@ bool McapFile::IsMcap(Bytes head) {
                                                         [](char one, std::uint8_t other) { return static_cast<std::uint8_t>(one) == other; });
 }
 
+McapFile::McapFile(std::unique_ptr<ByteSource> source) : source_(std::move(source)), window_(kMostMcapChunkHeadBytes) {}
+
 double McapFile::share() const { return source_->size() == 0 ? 1.0 : static_cast<double>(position_) / static_cast<double>(source_->size()); }
 
 std::optional<RecordedMessage> McapFile::Next() {
@@ -104,6 +106,12 @@ bool McapFile::NextRecord() {
     return false;
   }
   const bool is_used = opcode == kMcapSchema || opcode == kMcapChannel || opcode == kMcapMessage || opcode == kMcapChunk;
+  if (is_used && length > kMaxPieceBytes && !is_cut && IsRecordAt(content_at + length)) {
+    losses_.Damage(position_, "record of " + std::to_string(length) + " bytes is larger than is read");
+    losses_.num_bytes_skipped += static_cast<std::int64_t>(kMcapHeadBytes + length);
+    position_ = content_at + length;
+    return true;
+  }
   // The spec reserves 0x80 and above for others, and what is not known is to be skipped; 0 is no opcode.
   if (opcode == 0 || (is_cut && opcode != kMcapChunk) || (is_used && length > kMaxPieceBytes)) {
     FindNextChunk(is_cut ? "is longer than the file" : "is no record");
@@ -143,24 +151,29 @@ void McapFile::TakeChunk(Bytes content) {
   chunk_position_ = 0;
 }
 
+// Whether a record, or the end of the file, stands behind one that is not read: else its length may be the damage.
+bool McapFile::IsRecordAt(std::uint64_t offset) const {
+  std::array<std::uint8_t, kMcapHeadBytes> head{};
+  if (offset >= source_->size()) return offset == source_->size();
+  return source_->Read(offset, head) == head.size() && head[0] != 0 && ReadU64LittleEndian(head, 1) <= source_->size() - offset - kMcapHeadBytes;
+}
+
 // Looks behind the place of the fault for a record that is a chunk to its last byte.
 void McapFile::FindNextChunk(const std::string& fault) {
-  constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
-  constexpr std::size_t kMostHeadBytes = kMcapHeadBytes + 8 + 8 + 8 + 4 + 4 + 4 + 8;  // with the longest name of a compression
   losses_.Damage(position_, fault);
   const auto begin = position_ + 1;
-  for (auto block_at = begin; block_at < source_->size(); block_at += kBlockBytes) {
-    const auto bytes = ReadBytes(*source_, block_at, kBlockBytes + kMostHeadBytes);
-    const Bytes block(bytes);
-    for (std::size_t at = 0; at < std::min(kBlockBytes, block.size()); ++at) {
-      if (block[at] != kMcapChunk || at + kMcapHeadBytes > block.size()) continue;
-      const auto length = ReadU64LittleEndian(block, at + 1);
-      FieldsFromFront fields(block.subspan(at + kMcapHeadBytes));
+  for (auto from = begin; from < source_->size(); from = window_.end()) {
+    const auto bytes = window_.From(*source_, from);
+    const auto num_begins = std::min(static_cast<std::size_t>(window_.end() - from), bytes.size());
+    for (std::size_t at = 0; at < num_begins; ++at) {
+      if (bytes[at] != kMcapChunk || at + kMcapHeadBytes > bytes.size()) continue;
+      const auto length = ReadU64LittleEndian(bytes, at + 1);
+      FieldsFromFront fields(bytes.subspan(at + kMcapHeadBytes));
       const auto head = McapHeadOf(fields);
-      if (!fields.is_good() || !McapPackingOf(head.packing) || head.num_packed > length) continue;
-      const auto num_head = (block.size() - fields.rest().size()) - at - kMcapHeadBytes;
+      if (!fields.is_good() || !McapPackingOf(head.packing) || length > kMaxPieceBytes || head.num_packed > length) continue;
+      const auto num_head = (bytes.size() - fields.rest().size()) - at - kMcapHeadBytes;
       if (num_head + head.num_packed != length) continue;
-      position_ = block_at + at;
+      position_ = from + at;
       losses_.num_bytes_skipped += static_cast<std::int64_t>(position_ - begin + 1);
       return;
     }
@@ -194,13 +207,13 @@ std::optional<RecordedMessage> McapFile::ToMessage(Bytes content) {
   FieldsFromFront fields(content);
   const auto topic = tables_.topics.find(fields.U16());
   fields.U32();
-  const auto log_time_ns = fields.U64();
+  const auto log_time_ns = static_cast<std::int64_t>(fields.U64());
   fields.U64();
-  if (!fields.is_good() || topic == tables_.topics.end() || log_time_ns > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+  if (!fields.is_good() || topic == tables_.topics.end() || log_time_ns < 0 || !IsRecordedTime(log_time_ns)) {
     ++losses_.num_bad_messages;
     return std::nullopt;
   }
-  return RecordedMessage{static_cast<std::int64_t>(log_time_ns), &topic->second, fields.rest()};
+  return RecordedMessage{log_time_ns, &topic->second, fields.rest()};
 }
 
 void McapFile::TakeTable(std::uint8_t opcode, Bytes content, Tables& tables) {
@@ -214,7 +227,7 @@ void McapFile::TakeTable(std::uint8_t opcode, Bytes content, Tables& tables) {
     const auto schema = tables.schemas.find(fields.U16());
     const auto name = fields.Text();
     const auto encoding = fields.Text();
-    if (!fields.is_good() || name.size() > kMaxNameBytes || tables.topics.size() >= kMaxTopics) return;
+    if (!fields.is_good() || name.empty() || name.size() > kMaxNameBytes || tables.topics.size() >= kMaxTopics) return;
     const auto type = schema == tables.schemas.end() ? std::string() : PlainTypeName(schema->second);
     tables.topics.try_emplace(number, Topic{std::string(name), type, McapEncodingOf(encoding)});
   }
@@ -248,9 +261,12 @@ Topics McapFile::IndexedTopics() {
   // Statistics: u64 messages, u16 schemas, u32 channels, attachments, metadata, chunks, u64 first and last time, then u16 channel and u64 count of
   // each.
   FieldsFromFront fields(counts);
-  fields.Take(8 + 2 + 4 * 4 + 8 + 8);
+  const auto num_messages = fields.U64();
+  fields.Take(2 + 4 * 4 + 8 + 8);
   FieldsFromFront pairs(fields.Take(fields.U32()));
-  for (auto& [number, topic] : tables.topics) topic.num_messages = counts.empty() ? -1 : 0;
+  // No counts of channels: the writer did not count them.
+  const bool is_counted = fields.is_good() && (num_messages == 0 || !pairs.rest().empty());
+  for (auto& [number, topic] : tables.topics) topic.num_messages = is_counted ? 0 : -1;
   while (!pairs.rest().empty()) {
     const auto topic = tables.topics.find(pairs.U16());
     const auto count = pairs.U64();

@@ -4,7 +4,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tools/import/byte_source.hpp"
@@ -17,7 +16,7 @@ class McapFile final : public Recording {
   /// Whether a file with this beginning is MCAP.
   static bool IsMcap(Bytes head);
 
-  explicit McapFile(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {}
+  explicit McapFile(std::unique_ptr<ByteSource> source);
 
   std::string kind() const override { return "MCAP"; }
   std::optional<RecordedMessage> Next() override;
@@ -34,12 +33,14 @@ class McapFile final : public Recording {
 
   bool NextRecord();
   void TakeChunk(Bytes content);
+  bool IsRecordAt(std::uint64_t offset) const;
   void FindNextChunk(const std::string& fault);
   std::optional<RecordedMessage> FromChunk();
   std::optional<RecordedMessage> ToMessage(Bytes content);
   static void TakeTable(std::uint8_t opcode, Bytes content, Tables& tables);
 
   std::unique_ptr<ByteSource> source_;
+  SearchWindow window_;
   std::uint64_t position_ = 8;  // behind the magic
   std::vector<std::uint8_t> chunk_;
   std::size_t chunk_position_ = 0;

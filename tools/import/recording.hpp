@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/core/bytes.hpp"
+#include "common/core/utime.hpp"
 
 namespace lookout::importer {
 
@@ -32,10 +33,13 @@ struct RecordedMessage {
   Bytes bytes;  // stand until the next call
 };
 
+/// Whether a message may have been recorded at it, since 1970: what Utime accepts from outside.
+constexpr bool IsRecordedTime(std::int64_t time_ns) { return time_ns >= kMinUtimeUs * 1000 && time_ns <= kMaxUtimeUs * 1000; }
+
 /// What was lost of a recording.
 struct Losses {
   std::int64_t num_damaged = 0;        // stretches, chunks or records that could not be read
-  std::int64_t num_bytes_skipped = 0;  // of the file, where another chunk was looked for
+  std::int64_t num_bytes_skipped = 0;  // of the file, where another chunk was looked for, or a record is too large to be read
   std::int64_t num_bad_messages = 0;   // of no topic that is known, or at an impossible time
   bool is_cut = false;                 // the file ends before its end mark
   std::string first_fault;             // in words, with the place

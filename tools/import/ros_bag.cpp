@@ -15,6 +15,7 @@ namespace {
 constexpr std::string_view kBagVersionLine = "#ROSBAG V2.0\n";
 // A header holds numbers and a topic's name; the index has one of each connection, a bag header is padded to 4 kB in its data.
 constexpr std::uint32_t kMaxBagHeaderBytes = 1U << 20;
+constexpr std::size_t kMostBagChunkHeadBytes = 256;  // three fields
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 
 enum BagOp : std::uint8_t { kBagMessage = 2, kBagHead = 3, kBagIndex = 4, kBagChunk = 5, kBagChunkInfo = 6, kBagConnection = 7 };
@@ -75,6 +76,8 @@ bool RosBag::IsBag(Bytes head) {
   return head.size() >= kBagVersionLine.size() && std::equal(kBagVersionLine.begin(), kBagVersionLine.end(), head.begin());
 }
 
+RosBag::RosBag(std::unique_ptr<ByteSource> source) : source_(std::move(source)), window_(kMostBagChunkHeadBytes + 4) {}
+
 double RosBag::share() const { return source_->size() == 0 ? 1.0 : static_cast<double>(position_) / static_cast<double>(source_->size()); }
 
 // The head of a record in the file; its data is not read.
@@ -121,6 +124,11 @@ bool RosBag::NextRecord() {
       return true;
     case kBagMessage:
     case kBagConnection: {
+      if (record->num_data_bytes > kMaxPieceBytes && IsRecordAt(end)) {
+        losses_.Damage(position_, "record of " + std::to_string(record->num_data_bytes) + " bytes is larger than is read");
+        losses_.num_bytes_skipped += static_cast<std::int64_t>(end - position_);
+        break;
+      }
       if (record->num_data_bytes > kMaxPieceBytes || end > source_->size()) {
         FindNextChunk("is longer than the file or than a message may be");
         return true;
@@ -160,7 +168,10 @@ bool RosBag::TakeChunk(const Record& record) {
   const bool is_cut = record.data_offset + record.num_data_bytes > source_->size();
   if (record.num_data_bytes > kMaxPieceBytes) {
     losses_.Damage(position_, "chunk of " + std::to_string(record.num_data_bytes) + " bytes is larger than is read");
-    if (!is_cut) return true;
+    if (!is_cut) {
+      losses_.num_bytes_skipped += static_cast<std::int64_t>(record.data_offset + record.num_data_bytes - position_);
+      return true;
+    }
   }
   losses_.is_cut = losses_.is_cut || is_cut;
   auto packed = ReadBytes(*source_, record.data_offset, std::min<std::uint64_t>(record.num_data_bytes, kMaxPieceBytes));
@@ -176,27 +187,31 @@ bool RosBag::TakeChunk(const Record& record) {
   return true;
 }
 
+// Whether a record, or the end of the file, stands behind one that is not read: else its length may be the damage.
+bool RosBag::IsRecordAt(std::uint64_t offset) const {
+  std::vector<std::uint8_t> header;
+  return offset == source_->size() || (offset < source_->size() && ReadRecord(offset, header));
+}
+
 // Looks behind the place of the fault for the head of a chunk: a header with op=5 that is one to its last byte.
 void RosBag::FindNextChunk(const std::string& fault) {
-  constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
-  constexpr std::size_t kMostHeadBytes = 256;  // three fields
   constexpr std::array<std::uint8_t, 4> kOpText{'o', 'p', '=', kBagChunk};
   losses_.Damage(position_, fault);
   const auto begin = position_ + 1;
-  for (auto block_at = begin; block_at < source_->size(); block_at += kBlockBytes) {
-    // What begins in this block is looked at as a whole.
-    const auto bytes = ReadBytes(*source_, block_at, kBlockBytes + kMostHeadBytes);
-    const Bytes block(bytes);
-    for (auto from = bytes.begin();;) {
-      const auto op = std::search(from, bytes.end(), kOpText.begin(), kOpText.end());
+  for (auto from = begin; from < source_->size(); from = window_.end()) {
+    // What begins in this stretch is looked at as a whole.
+    const auto bytes = window_.From(*source_, from);
+    const auto num_begins = static_cast<std::size_t>(window_.end() - from);
+    for (auto next = bytes.begin();;) {
+      const auto op = std::search(next, bytes.end(), kOpText.begin(), kOpText.end());
       if (op == bytes.end()) break;
-      from = op + 1;
+      next = op + 1;
       const auto op_at = static_cast<std::size_t>(op - bytes.begin());
-      const std::size_t first = op_at > kMostHeadBytes ? op_at - kMostHeadBytes : 0;
-      for (std::size_t head = first; head + 8 <= op_at && head < kBlockBytes; ++head) {
-        const auto length = ReadU32LittleEndian(block, head);
-        if (length > kMostHeadBytes || head + 4 + length > block.size() || !IsBagChunkHeader(block.subspan(head + 4, length))) continue;
-        position_ = block_at + head;
+      const std::size_t first = op_at > kMostBagChunkHeadBytes ? op_at - kMostBagChunkHeadBytes : 0;
+      for (std::size_t head = first; head + 8 <= op_at && head < num_begins; ++head) {
+        const auto length = ReadU32LittleEndian(bytes, head);
+        if (length > kMostBagChunkHeadBytes || head + 4 + length > bytes.size() || !IsBagChunkHeader(bytes.subspan(head + 4, length))) continue;
+        position_ = from + head;
         losses_.num_bytes_skipped += static_cast<std::int64_t>(position_ - begin + 1);
         return;
       }

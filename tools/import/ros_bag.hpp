@@ -15,7 +15,7 @@ class RosBag final : public Recording {
   /// Whether a file with this beginning is a bag of format 2.0.
   static bool IsBag(Bytes head);
 
-  explicit RosBag(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {}
+  explicit RosBag(std::unique_ptr<ByteSource> source);
 
   std::string kind() const override { return "ROS bag"; }
   std::optional<RecordedMessage> Next() override;
@@ -29,6 +29,7 @@ class RosBag final : public Recording {
 
   bool NextRecord();
   bool TakeChunk(const Record& record);
+  bool IsRecordAt(std::uint64_t offset) const;
   void FindNextChunk(const std::string& fault);
   std::optional<RecordedMessage> FromChunk();
   std::optional<RecordedMessage> ToMessage(const Record& record);
@@ -36,6 +37,7 @@ class RosBag final : public Recording {
   std::optional<Record> ReadRecord(std::uint64_t offset, std::vector<std::uint8_t>& header) const;
 
   std::unique_ptr<ByteSource> source_;
+  SearchWindow window_;
   std::uint64_t position_ = 13;  // behind the version line
   std::vector<std::uint8_t> chunk_;
   std::size_t chunk_position_ = 0;

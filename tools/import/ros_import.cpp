@@ -13,7 +13,7 @@ namespace lookout::importer {
 
 namespace {
 
-std::optional<Utime> UtimeOfNs(std::int64_t time_ns) { return UtimeFromWire(time_ns >= 0 ? time_ns / 1000 : (time_ns - 999) / 1000); }
+std::optional<Utime> UtimeOfNs(std::int64_t time_ns) { return UtimeFromWire(time_ns / 1000 - (time_ns % 1000 < 0 ? 1 : 0)); }
 
 bool IsNear(std::int64_t one_ns, std::int64_t other_ns) {
   std::int64_t off_ns = 0;
@@ -22,6 +22,8 @@ bool IsNear(std::int64_t one_ns, std::int64_t other_ns) {
 
 // rad/s and m/s2: what NAV_RAW takes.
 constexpr double kMaxImportImuValue = 1000.0;
+// Of a message: some hundred lines. Looking for sentences in it takes longer than reading it.
+constexpr std::size_t kMaxSentenceText = std::size_t{64} << 10;
 
 }  // namespace
 
@@ -42,8 +44,7 @@ void RosImport::Learn(Recording& recording) {
     const auto use = map_.find(message->topic->name);
     if (use == map_.end() || use->second.use != Use::kLidarScan) continue;
     if (const auto cloud = ParsePointCloud(message->topic->encoding, message->bytes)) {
-      clouds_.Learn(*cloud);
-      ++num_clouds;
+      num_clouds += clouds_.Learn(*cloud) ? 1 : 0;
     }
   }
 }
@@ -53,6 +54,8 @@ void RosImport::Take(const RecordedMessage& message) {
   if (found == map_.end() || found->second.use == Use::kNone) return;
   const auto use = found->second;
   auto& tally = tallies_[message.topic->name];
+  // First: what was recorded before a clock was set back must be out before anything of the new era is in.
+  if (const auto recorded = UtimeOfNs(message.time_ns)) log_.AdvanceTo(*recorded);
   switch (use.use) {
     case Use::kLidarPackets:
       TakePackets(message, use.time, tally);
@@ -76,7 +79,6 @@ void RosImport::Take(const RecordedMessage& message) {
     case Use::kNone:
       break;
   }
-  if (const auto recorded = UtimeOfNs(message.time_ns)) log_.AdvanceTo(*recorded);
 }
 
 // nullopt where the one that counts is no time.
@@ -181,7 +183,7 @@ void RosImport::AddSentence(Utime time, const std::string& topic, std::string se
 void RosImport::TakeSentence(const RecordedMessage& message, TimeBasis basis, TopicTally& tally) {
   const bool has_header = message.topic->type == kTypeSentence;
   const auto sentence = ParseSentenceMessage(message.topic->encoding, message.bytes, has_header);
-  if (!sentence) {
+  if (!sentence || sentence->text.size() > kMaxSentenceText) {
     ++tally.num_refused;
     return;
   }
@@ -191,6 +193,7 @@ void RosImport::TakeSentence(const RecordedMessage& message, TimeBasis basis, To
   // Some drivers leave the end of the line in it, or put several lines into one message.
   const auto lines = navigator::SplitDatagram({reinterpret_cast<const std::uint8_t*>(sentence->text.data()), sentence->text.size()});
   ++(lines.lines.empty() ? tally.num_empty : tally.num_used);
+  tally.num_lines_lost += lines.num_no_start + lines.num_too_long + lines.num_not_printable + lines.num_cut_off;
   for (const auto& line : lines.lines) AddSentence(time, message.topic->name, line, tally);
 }
 

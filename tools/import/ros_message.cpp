@@ -1,5 +1,6 @@
 #include "tools/import/ros_message.hpp"
 
+#include <algorithm>
 #include <bit>
 
 namespace lookout::importer {
@@ -100,7 +101,8 @@ class RosReader {
 };
 
 bool DoSizesAgree(const RosPointCloud& cloud) {
-  const auto num_points = std::uint64_t{cloud.height} * cloud.width;
+  // Of no points, too, neither may have no end: rows are gone through.
+  const auto num_points = std::max(std::uint64_t{cloud.height}, std::uint64_t{1}) * std::max(cloud.width, 1U);
   return num_points <= kMaxRosPoints && cloud.row_step >= std::uint64_t{cloud.width} * cloud.point_step &&
          cloud.data.size() >= std::uint64_t{cloud.row_step} * cloud.height;
 }

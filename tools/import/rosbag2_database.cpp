@@ -44,6 +44,13 @@ void Harden(sqlite3* database) {
   sqlite3_exec(database, "PRAGMA query_only=1; PRAGMA cell_size_check=1; PRAGMA mmap_size=0; PRAGMA cache_size=-8192", nullptr, nullptr, nullptr);
 }
 
+// Whether a file of this name with this ending is there and not empty.
+bool HasBytes(const std::filesystem::path& file, const char* ending) {
+  std::error_code fault;
+  const auto size = std::filesystem::file_size(file.string() + ending, fault);
+  return !fault && size > 0;
+}
+
 // Tables, and no views, which could be without end.
 bool IsRosbag2(sqlite3* database) {
   return NumberOf(database, "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')") == 2;
@@ -65,15 +72,20 @@ Rosbag2Database::Rosbag2Database(const std::filesystem::path& file) {
                           letter == '.' || letter == '_' || letter == '-';
     uri += is_plain ? std::string(1, letter) : std::string{'%', kDigits[byte >> 4], kDigits[byte & 15]};
   }
-  const auto opens = [this, &uri](const char* how) {
+  const auto opens = [this, &uri](const char* how, const char* vfs = nullptr) {
     sqlite3_close(database_);
     database_ = nullptr;
-    if (sqlite3_open_v2((uri + how).c_str(), &database_, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr) != SQLITE_OK) return false;
+    if (sqlite3_open_v2((uri + how).c_str(), &database_, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, vfs) != SQLITE_OK) return false;
+    // Without locks: an index of a -wal that is held in memory.
+    if (vfs != nullptr) sqlite3_exec(database_, "PRAGMA locking_mode=EXCLUSIVE", nullptr, nullptr, nullptr);
     Harden(database_);
     return IsRosbag2(database_);
   };
-  // A journal that was left behind cannot be rolled back without writing: then what stands in the file itself is read.
-  if (!opens("?mode=ro") && !opens("?mode=ro&immutable=1")) {
+  // SQLite puts a -shm, and where there is none a -wal, beside a database that it opens to read. So one without a -wal is read as what does not
+  // change, and the -wal that a writer has left behind without the locks that the -shm is for; with a -shm the writer may still be there. A journal
+  // that was left behind cannot be rolled back without writing: then what stands in the file itself is read.
+  const bool is_open = HasBytes(file, "-wal") && (HasBytes(file, "-shm") ? opens("?mode=ro") : opens("?mode=ro", "unix-none"));
+  if (!is_open && !opens("?mode=ro&immutable=1")) {
     const std::string reason = database_ == nullptr ? "no memory" : sqlite3_errmsg(database_);
     sqlite3_close(database_);
     throw std::runtime_error(file.string() + ": is an SQLite database, but no recording of rosbag2: " + reason);
@@ -104,8 +116,9 @@ void Rosbag2Database::ReadTopics() {
     const auto number = sqlite3_column_int64(statement.get(), 0);
     if (number < 0 || number > std::numeric_limits<std::uint32_t>::max()) continue;
     const auto encoding = ColumnText(statement.get(), 3) == "cdr" ? Encoding::kCdr : Encoding::kOther;
-    topics_.try_emplace(static_cast<std::uint32_t>(number),
-                        Topic{ColumnText(statement.get(), 1), PlainTypeName(ColumnText(statement.get(), 2)), encoding});
+    const auto name = ColumnText(statement.get(), 1);
+    if (name.empty()) continue;
+    topics_.try_emplace(static_cast<std::uint32_t>(number), Topic{name, PlainTypeName(ColumnText(statement.get(), 2)), encoding});
   }
   first_id_ = NumberOf(database_, "SELECT min(id) FROM messages");
   greatest_id_ = NumberOf(database_, "SELECT max(id) FROM messages");
@@ -165,11 +178,12 @@ std::optional<RecordedMessage> Rosbag2Database::ToMessage() {
       number >= 0 && number <= std::numeric_limits<std::uint32_t>::max() ? topics_.find(static_cast<std::uint32_t>(number)) : topics_.end();
   const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(statement_, 3));
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_, 3));
-  if (topic == topics_.end() || (data == nullptr && size > 0)) {
+  const auto time_ns = sqlite3_column_int64(statement_, 2);
+  if (topic == topics_.end() || !IsRecordedTime(time_ns) || (data == nullptr && size > 0)) {
     ++losses_.num_bad_messages;
     return std::nullopt;
   }
-  const RecordedMessage message{sqlite3_column_int64(statement_, 2), &topic->second, Bytes(data, size)};
+  const RecordedMessage message{time_ns, &topic->second, Bytes(data, size)};
   if (!BeginsAsZstd(message.bytes)) return message;
   // compression_mode: message. CDR begins with a zero.
   auto unpacked = UnpackZstd(message.bytes);

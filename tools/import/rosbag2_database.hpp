@@ -18,7 +18,7 @@ class Rosbag2Database final : public Recording {
   /// Whether a file with this beginning is a database.
   static bool IsDatabase(Bytes head);
 
-  /// Opens for reading alone: the file is not changed, also where its writer has left a journal behind.
+  /// Opens for reading alone: the file is not changed, also where its writer has left a journal behind, and nothing is put beside it.
   /// @throws std::runtime_error when it cannot be opened, or is no recording of rosbag2
   explicit Rosbag2Database(const std::filesystem::path& file);
 

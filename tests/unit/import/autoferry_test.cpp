@@ -63,6 +63,29 @@ TEST_F(Autoferry, WhatIsWrongIsSaidWithTheFile) {
   }
 }
 
+// Two scans cost poses at every 20 ms between them.
+TEST_F(Autoferry, ScansFarApartAreRefusedBeforeTheyCostMemory) {
+  const auto scan = [](double time_s) { return R"({"time":)" + std::to_string(time_s) + R"(,"ownshipPosition":[0,0],"measurement":[]})"; };
+  EXPECT_EQ(FaultOf("[" + scan(5.0) + "," + scan(65.0) + "]"), "none");
+  const auto step = FaultOf("[" + scan(5.0) + "," + scan(65.5) + "]");
+  EXPECT_NE(step.find("scan at 65.500000 s: more than 60 s behind the scan before"), std::string::npos) << step;
+  std::string many = "[" + scan(0.0);
+  for (int minute = 1; minute <= 24 * 60; ++minute) many += "," + scan(60.0 * minute);
+  EXPECT_EQ(FaultOf(many + "]"), "none");
+  const auto span = FaultOf(many + "," + scan(60.0 * 24 * 60 + 1.0) + "]");
+  EXPECT_NE(span.find("scan at 86401.000000 s: more than a day behind the first scan"), std::string::npos) << span;
+}
+
+TEST_F(Autoferry, AMeasurementOfAnyDepthIsToldByTheTimeOfItsScan) {
+  constexpr std::size_t kDepth = 1'000'000;
+  const auto deep = std::string(kDepth, '[') + std::string(kDepth, ']');
+  for (const auto& measurement : {"[" + deep + ",0]", "[" + deep + "," + deep + "]", deep}) {
+    const auto fault = FaultOf(R"([{"time":7.5,"ownshipPosition":[0,0],"measurement":)" + measurement + "}]");
+    EXPECT_NE(fault.find("scan at 7.500000 s: "), std::string::npos);
+    EXPECT_LT(fault.size(), 400U);
+  }
+}
+
 TEST_F(Autoferry, ObstaclesAreAsTheServicesWantThem) {
   const auto messages = ToObstacles(ReadFerryScans(Write(kScans)));
   ASSERT_EQ(messages.size(), 4U);

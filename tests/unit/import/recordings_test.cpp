@@ -1,12 +1,18 @@
 // ROS bags, MCAP files and databases of rosbag2, whole and damaged.
+#include <algorithm>
+#include <filesystem>
 #include <gtest/gtest.h>
+#include <limits>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "common/bus/log_file.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/import/made_recordings.hpp"
 #include "tools/import/byte_source.hpp"
+#include "tools/import/import_recording.hpp"
 #include "tools/import/mcap_file.hpp"
 #include "tools/import/ros_bag.hpp"
 #include "tools/import/rosbag2_database.hpp"
@@ -58,6 +64,36 @@ std::map<std::string, std::int64_t> CountsOf(const Topics& topics) {
   std::map<std::string, std::int64_t> counts;
   for (const auto& [number, topic] : topics) counts[topic.name] = topic.num_messages;
   return counts;
+}
+
+// A source that counts the bytes that were read of it.
+class CountingSource final : public ByteSource {
+ public:
+  CountingSource(Payload bytes, std::uint64_t& num_read) : source_(std::move(bytes)), num_read_(num_read) {}
+  std::uint64_t size() const override { return source_.size(); }
+  std::size_t Read(std::uint64_t offset, std::span<std::uint8_t> out) const override {
+    const auto count = source_.Read(offset, out);
+    num_read_ += count;
+    return count;
+  }
+
+ private:
+  MemorySource source_;
+  std::uint64_t& num_read_;
+};
+
+// A schema, and a channel of it.
+Payload McapTopic(std::uint16_t number, const std::string& name, std::string_view encoding = "cdr") {
+  const auto schema = static_cast<std::uint16_t>(number + 1);
+  return Writer()
+      .Raw(McapRecord(3,
+                      Writer().Number(schema).Sized(std::string_view("nmea_msgs/msg/Sentence")).Sized(std::string_view("ros2msg")).Number(0U).bytes))
+      .Raw(McapRecord(4, Writer().Number(number).Number(schema).Sized(name).Sized(encoding).Number(0U).bytes))
+      .bytes;
+}
+
+Payload McapMessage(std::uint16_t number, std::int64_t time_ns, const Payload& bytes) {
+  return McapRecord(5, Writer().Number(number).Number(0U).Number(time_ns).Number(time_ns).Raw(bytes).bytes);
 }
 
 const std::map<std::string, std::int64_t> kFourEach{{"/imu", 4}, {"/nmea", 4}, {"/packets", 4}};
@@ -128,6 +164,136 @@ TEST(RosBag, BoundsWhatItTakesForAHostileLength) {
     message.Raw("#ROSBAG V2.0\n").Sized(BagHeader({{"op", {2}}, {"conn", BagNumber(0U)}})).Number(size);
     EXPECT_GE(ReadAll(*OpenBag(message.bytes)).losses.num_damaged, 1);
   }
+}
+
+// A record that is too large to be read, and lies in the file as a whole.
+TEST(RosBag, StepsOverARecordThatIsTooLarge) {
+  const auto made = SomeMessages(Encoding::kRos1);
+  const auto begin = Writer()
+                         .Raw("#ROSBAG V2.0\n")
+                         .Raw(BagRecord({{"index_pos", BagNumber(std::uint64_t{0})}, {"op", {3}}}, Payload(64, ' ')))
+                         .Raw(BagConnection(0, made[0].topic, made[0].type))
+                         .Raw(BagMessage(0, made[0].time_ns, Payload(kMaxPieceBytes + 1)))
+                         .bytes;
+  const auto read = ReadAll(*OpenBag(Writer().Raw(begin).Raw(BagMessage(0, made[3].time_ns, made[3].bytes)).bytes));
+  ExpectEqual(read.messages, {made[3]});
+  EXPECT_EQ(read.losses.num_damaged, 1);
+  EXPECT_GT(read.losses.num_bytes_skipped, static_cast<std::int64_t>(kMaxPieceBytes));
+  // Where no record stands behind it, its length is the damage: the next chunk is looked for, inside of it, too.
+  auto damaged = Writer().Raw(begin).Raw(Payload(100, 0xFF)).bytes;
+  const auto chunk = BagChunk(Packing::kNone, BagMessage(0, made[3].time_ns, made[3].bytes));
+  std::ranges::copy(chunk, damaged.begin() + 5000);
+  ExpectEqual(ReadAll(*OpenBag(damaged)).messages, {made[3]});
+}
+
+// Heads of chunks that are none: each is a fault, and the recording is read about once all the same.
+TEST(Recordings, OfFalseHeadsAreNotReadAnewForEach) {
+  const auto bag_head = Writer().Sized(BagHeader({{"op", {5}}, {"compression", BagBytes("none")}, {"size", BagNumber(0U)}})).Raw(Payload(12)).bytes;
+  const auto mcap_head = McapRecord(6, Writer().Raw(Payload(28)).Number(0U).Number(std::uint64_t{0}).bytes);
+  Writer bag;
+  Writer mcap;
+  bag.Raw("#ROSBAG V2.0\n");
+  mcap.Raw(kMcapFileMagic);
+  for (int i = 0; i < 10'000; ++i) {
+    bag.Raw(bag_head);
+    mcap.Raw(mcap_head).Raw(Payload(1));
+  }
+  const auto size = bag.bytes.size();
+  std::uint64_t num_read = 0;
+  RosBag false_bag(std::make_unique<CountingSource>(bag.bytes, num_read));
+  EXPECT_GE(ReadAll(false_bag).losses.num_damaged, 9'000);
+  EXPECT_LT(num_read, 4 * size);
+  const auto mcap_size = mcap.bytes.size();
+  num_read = 0;
+  McapFile false_mcap(std::make_unique<CountingSource>(mcap.bytes, num_read));
+  EXPECT_GE(ReadAll(false_mcap).losses.num_damaged, 9'000);
+  EXPECT_LT(num_read, 4 * mcap_size);
+}
+
+TEST(McapFile, StepsOverARecordThatIsTooLarge) {
+  const auto made = SomeMessages(Encoding::kCdr);
+  const auto begin = Writer().Raw(kMcapFileMagic).Raw(McapTopic(0, "/nmea")).Raw(McapMessage(0, made[0].time_ns, Payload(kMaxPieceBytes))).bytes;
+  const auto read = ReadAll(*OpenMcap(Writer().Raw(begin).Raw(McapMessage(0, made[3].time_ns, made[3].bytes)).bytes));
+  ExpectEqual(read.messages, {made[3]});
+  EXPECT_EQ(read.losses.num_damaged, 1);
+  EXPECT_GT(read.losses.num_bytes_skipped, static_cast<std::int64_t>(kMaxPieceBytes));
+  auto damaged = Writer().Raw(begin).Raw(Payload(100)).bytes;
+  const auto chunk = McapChunk(Packing::kNone, McapMessage(0, made[3].time_ns, made[3].bytes));
+  std::ranges::copy(chunk, damaged.begin() + 5000);
+  ExpectEqual(ReadAll(*OpenMcap(damaged)).messages, {made[3]});
+}
+
+// Statistics without counts of channels: the writer did not count.
+TEST(McapFile, WithoutCountsSaysNone) {
+  const auto make = [](std::uint64_t num_messages) {
+    Writer file;
+    file.Raw(kMcapFileMagic).Raw(McapTopic(0, "/nmea")).Raw(McapRecord(0x0F, Payload(4)));
+    const auto summary_at = file.bytes.size();
+    file.Raw(McapTopic(0, "/nmea")).Raw(McapRecord(0x0B, Writer().Number(num_messages).Raw(Payload(34)).Number(0U).bytes));
+    file.Raw(McapRecord(2, Writer().Number(static_cast<std::uint64_t>(summary_at)).Raw(Payload(12)).bytes));
+    return file.Raw(kMcapFileMagic).bytes;
+  };
+  EXPECT_EQ(OpenMcap(make(7))->IndexedTopics().at(0).num_messages, -1);
+  EXPECT_EQ(OpenMcap(make(0))->IndexedTopics().at(0).num_messages, 0);
+}
+
+TEST(Recordings, HaveNoTopicsWithoutAName) {
+  const auto mcap = Writer().Raw(kMcapFileMagic).Raw(McapTopic(0, "")).Raw(McapMessage(0, kMadeStampNs, MakeImu(Encoding::kCdr))).bytes;
+  const auto long_name =
+      Writer().Raw(kMcapFileMagic).Raw(McapTopic(0, std::string(kMaxNameBytes + 1, 'x'))).Raw(McapMessage(0, kMadeStampNs, {})).bytes;
+  const auto database = [](std::size_t size) {
+    return MakeDatabase({{std::string(size, 'x'), "sensor_msgs/Imu", kMadeStampNs, MakeImu(Encoding::kCdr)}});
+  };
+  std::vector<std::unique_ptr<Recording>> recordings;
+  recordings.push_back(OpenMcap(mcap));
+  recordings.push_back(OpenMcap(long_name));
+  recordings.push_back(std::make_unique<Rosbag2Database>(database(0)));
+  recordings.push_back(std::make_unique<Rosbag2Database>(database(kMaxNameBytes + 1)));
+  for (const auto& recording : recordings) {
+    const auto read = ReadAll(*recording);
+    EXPECT_TRUE(read.messages.empty());
+    EXPECT_TRUE(recording->topics().empty());
+    EXPECT_EQ(read.losses.num_bad_messages, 1);
+  }
+}
+
+TEST(Recordings, RefuseTimesThatNoClockHas) {
+  const auto make = [](std::int64_t time_ns) { return std::vector<Made>{{"/imu", "sensor_msgs/Imu", time_ns, MakeImu(Encoding::kCdr)}}; };
+  for (const auto time_ns : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max(), kMinUtimeUs * 1000 - 1}) {
+    Rosbag2Database database(MakeDatabase(make(time_ns)));
+    EXPECT_EQ(ReadAll(database).losses.num_bad_messages, 1);
+    EXPECT_EQ(ReadAll(*OpenMcap(MakeMcap(make(time_ns), Packing::kNone))).losses.num_bad_messages, 1);
+  }
+  EXPECT_EQ(ReadAll(*OpenMcap(MakeMcap(make(-1), Packing::kNone))).losses.num_bad_messages, 1);
+}
+
+// With what its writer has left in the -wal, and without any.
+TEST(Rosbag2Database, LeavesNothingBesideTheFile) {
+  const support::TempDir folder;
+  const auto file = folder / "day.db3";
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database,
+               "PRAGMA journal_mode=wal; PRAGMA wal_autocheckpoint=0; CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);"
+               "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data); INSERT INTO topics VALUES (1, '/a', 'a/msg/A', 'cdr');"
+               "INSERT INTO messages VALUES (1, 1, 5, x'00')",
+               nullptr, nullptr, nullptr);
+  const support::TempDir left;
+  for (const char* ending : {"", "-wal"}) {
+    std::filesystem::copy_file(file.string() + ending, (left / "day.db3").string() + ending);
+  }
+  sqlite3_close(database);
+  const auto read_in = [](const support::TempDir& place, std::size_t num_files) {
+    {
+      Rosbag2Database opened(place / "day.db3");
+      EXPECT_EQ(ReadAll(opened).messages.size(), 1U);
+    }
+    std::size_t num_found = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(place.path())) num_found += entry.is_regular_file() ? 1 : 0;
+    EXPECT_EQ(num_found, num_files);
+  };
+  read_in(folder, 1);
+  read_in(left, 2);
 }
 
 TEST(McapFile, GivesItsMessagesInTheOrderOfTheFile) {
@@ -312,6 +478,27 @@ TEST(McapFile, GivesMessagesOutsideOfChunks) {
   const auto read = ReadAll(*OpenMcap(file.bytes));
   ExpectEqual(read.messages, {made[0]});
   EXPECT_TRUE(read.losses.is_cut);
+}
+
+// Messages of LCM decide how a file is read where there are some.
+TEST(ImportRecording, TakesLcmAloneWhereItHasMessages) {
+  const support::TempDir folder;
+  const auto run = [&folder](const Payload& records) {
+    support::WriteFile(folder / "in.mcap", std::string(records.begin(), records.end()));
+    std::ostringstream notes;
+    log::LogOutput output(folder / "out.log", {.force = true, .inputs = {}, .tell = [](const std::string&) {}});
+    ImportRecording({support::kDemoConfig, {folder / "in.mcap"}, std::nullopt}, output, notes);
+    output.Commit();
+    return notes.str();
+  };
+  const auto made = SomeMessages(Encoding::kCdr);
+  const auto topics = Writer().Raw(kMcapFileMagic).Raw(McapTopic(0, "/nmea")).Raw(McapTopic(1, "FOO", "x-lcm")).bytes;
+  const auto ros = McapMessage(0, made[0].time_ns, made[0].bytes);
+  const auto lcm = McapMessage(1, made[0].time_ns, Payload(8));
+  EXPECT_NE(run(Writer().Raw(topics).Raw(ros).bytes).find("/nmea: 1 messages used"), std::string::npos);
+  EXPECT_NE(run(Writer().Raw(topics).Raw(ros).Raw(lcm).bytes).find("1 messages of other encodings are not used"), std::string::npos);
+  const auto long_name = Writer().Raw(kMcapFileMagic).Raw(McapTopic(1, std::string(bus::kMaxLogChannelBytes + 1, 'x'), "x-lcm")).Raw(lcm).bytes;
+  EXPECT_THROW(run(long_name), std::runtime_error);
 }
 
 TEST(Recordings, OfAFolderAreInTheOrderOfTheirNumbers) {

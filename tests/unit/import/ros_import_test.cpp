@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -72,6 +73,13 @@ TEST(RosMessage, OfCountsThatItCannotHoldIsNone) {
     EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, count, count, 16, {}, Payload(64))));
     EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 1, 4, count, {}, Payload(64))));
   }
+}
+
+TEST(RosMessage, OfNoPointsHasNoEndlessRows) {
+  EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 0x7FFFFFFFU, 0, 16, {}, {})));
+  EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 0, 0x7FFFFFFFU, 0, {}, {})));
+  EXPECT_TRUE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 1, 0, 16, {}, {})));
+  EXPECT_TRUE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 0, 0, 16, {}, {})));
 }
 
 TEST(RosSentences, SayAPositionToAHundredthOfAMillimetre) {
@@ -157,7 +165,7 @@ class Import : public ::testing::Test {
   void Run(const std::vector<Made>& messages, const TopicMap& map) {
     vlp16::Params params;
     LogMaker log(params, true, [this](Utime time, const bus::Channel& channel, Bytes bytes) {
-      EXPECT_GE(time, last_);
+      num_set_back_ += time < last_ ? 1 : 0;
       last_ = time;
       by_channel_[std::string(channel.name)].emplace_back(bytes.begin(), bytes.end());
     });
@@ -167,6 +175,8 @@ class Import : public ::testing::Test {
       import.Take({message.time_ns, &topic, message.bytes});
     }
     log.Finish();
+    num_late_ = log.num_late();
+    EXPECT_EQ(num_set_back_, expected_set_back_);
     tallies_ = import.tallies();
   }
 
@@ -180,6 +190,9 @@ class Import : public ::testing::Test {
   }
 
   Utime last_{};
+  int num_set_back_ = 0;
+  int expected_set_back_ = 0;
+  std::int64_t num_late_ = 0;
   std::map<std::string, std::vector<Payload>> by_channel_;
   std::map<std::string, TopicTally> tallies_;
 };
@@ -245,6 +258,62 @@ TEST_F(Import, CountsWhatIsNotOfItsType) {
   EXPECT_EQ(items[1].imu[0].specific_force_mps2[2], -9.8);
   EXPECT_EQ(items[1].imu[0].angular_velocity_radps[0], 0.01);
   EXPECT_EQ(items[1].imu[0].angular_velocity_radps[1], -0.02);
+}
+
+// By 100 s: what came before is out, marks stand between, and nothing is late.
+TEST_F(Import, BeginsAnewWhereTheClockWasSetBack) {
+  expected_set_back_ = 1;
+  constexpr std::int64_t kSetBackNs = 100'000'000'000;
+  std::vector<Made> messages;
+  for (const std::int64_t era_ns : {std::int64_t{0}, -kSetBackNs}) {
+    for (int i = 0; i < 5; ++i) {
+      const auto time_ns = kMadeStampNs + era_ns + i * 10'000'000LL;
+      messages.push_back({"/packets", "velodyne_msgs/VelodyneScan", time_ns, MakeVelodyneScan(Encoding::kRos1, 1, time_ns)});
+      messages.push_back({"/imu", "sensor_msgs/Imu", time_ns, MakeImu(Encoding::kRos1, time_ns)});
+    }
+  }
+  Run(messages, {{"/imu", {Use::kImu}}, {"/packets", {Use::kLidarPackets}}});
+  EXPECT_EQ(num_late_, 0);
+  std::vector<std::vector<std::int64_t>> times_us;
+  std::vector<std::int32_t> marks;
+  for (const auto& bytes : by_channel_["LIDAR_PACKETS"]) {
+    const auto bundle = bus::Decode<lidar_packets_t>(bytes).value();
+    times_us.push_back(bundle.host_utime_us);
+    marks.push_back(bundle.marks);
+  }
+  ASSERT_EQ(times_us.size(), 2U);
+  constexpr std::int32_t kBoth = std::int32_t{lidar_packets_t::MARK_START} | std::int32_t{lidar_packets_t::MARK_END};
+  EXPECT_EQ(marks, (std::vector<std::int32_t>{kBoth, kBoth}));
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(times_us[0].at(i), kMadeStampNs / 1000 + static_cast<std::int64_t>(i) * 10'000);
+    EXPECT_EQ(times_us[1].at(i), times_us[0].at(i) - kSetBackNs / 1000);
+  }
+  std::int64_t num_starts = 0;
+  std::int64_t num_samples = 0;
+  for (const auto& item : Navigation()) {
+    num_starts += item.kind == nav_raw_t::KIND_START ? 1 : 0;
+    num_samples += item.kind == nav_raw_t::KIND_IMU ? 1 : 0;
+  }
+  EXPECT_EQ(num_starts, 2);
+  EXPECT_EQ(num_samples, 10);
+}
+
+TEST_F(Import, CountsLinesThatAreLostAndRefusesTextWithoutEnd) {
+  const auto make = [](const std::string& text) { return Made{"/nmea", "nmea_msgs/Sentence", kMadeStampNs, MakeSentence(Encoding::kRos1, text)}; };
+  Run({make("$GPHDT,1.0,T\r\nnothing\r\n$" + std::string(400, 'x') + "\r\n$\x01\r\n$GPHDT,2.0,T\r\n"),
+       make("$GPHDT,1.0,T\n" + std::string(64 << 10, '$'))},
+      {{"/nmea", {Use::kSentences}}});
+  EXPECT_EQ(tallies_.at("/nmea").num_used, 1);
+  EXPECT_EQ(tallies_.at("/nmea").num_lines_lost, 3);
+  EXPECT_EQ(tallies_.at("/nmea").num_refused, 1);
+  EXPECT_EQ(Navigation().size(), 4U);
+}
+
+TEST_F(Import, RefusesTimesThatNoClockHas) {
+  for (const auto time_ns : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+    Run({{"/imu", "sensor_msgs/Imu", time_ns, MakeImu(Encoding::kRos1)}}, {{"/imu", {Use::kImu, TimeBasis::kRecorded}}});
+    EXPECT_EQ(tallies_.at("/imu").num_refused, 1);
+  }
 }
 
 TEST(ImportSource, OfATopicIsAWordOfLimitedLength) {
@@ -376,6 +445,116 @@ TEST(CloudScans, WithoutRingsAndTimesSayWhatTheyLack) {
   EXPECT_EQ(scans.Remarks().size(), 3U);
   EXPECT_GE(parts[0].num_rings, MadeTurn::kNumRings);
   EXPECT_LE(scans.counts().num_hidden, 12);
+}
+
+// Points at 20 m, at each of these elevations once in a degree.
+Payload MakeBareTurn(const std::vector<double>& elevations_deg) {
+  Writer data;
+  for (int column = 0; column < 360; ++column) {
+    for (const double elevation_deg : elevations_deg) {
+      const double level_m = 20.0 * std::cos(DegToRad(elevation_deg));
+      data.Number(static_cast<float>(level_m * std::cos(DegToRad(column)))).Number(static_cast<float>(-level_m * std::sin(DegToRad(column))));
+      data.Number(static_cast<float>(20.0 * std::sin(DegToRad(elevation_deg))));
+    }
+  }
+  return MakeCloud(Encoding::kRos1, 1, static_cast<std::uint32_t>(360 * elevations_deg.size()), 12, {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}},
+                   data.bytes);
+}
+
+TEST(CloudScans, WithoutRingsHaveBandsOfAllThatWasLearned) {
+  const auto flat = MakeBareTurn({0.0, 1.0, 2.0});
+  const auto tall = MakeBareTurn({-15.0, -5.0, 5.0, 15.0});
+  const auto taller = MakeBareTurn({-15.0, -5.0, 5.0, 15.0, 25.0});
+  CloudScans scans;
+  EXPECT_TRUE(scans.Learn(*ParsePointCloud(Encoding::kRos1, flat)));
+  EXPECT_TRUE(scans.Learn(*ParsePointCloud(Encoding::kRos1, tall)));
+  auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, tall), kMadeStampNs, "model");
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_NEAR(parts[0].elevation_rad.front(), DegToRad(-15.0), 1e-4);
+  EXPECT_NEAR(parts[0].elevation_rad.back(), DegToRad(15.0), 1e-4);
+  EXPECT_EQ(scans.counts().num_out_of_range + scans.counts().num_hidden, 0);
+  // What comes later outside of the bands is none of theirs.
+  parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, taller), kMadeStampNs, "model");
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_NEAR(parts[0].elevation_rad.back(), DegToRad(15.0), 1e-4);
+  EXPECT_EQ(scans.counts().num_out_of_range, 360);
+}
+
+// Lines that are no rings: the first cloud alone does not show how far they go.
+TEST(CloudScans, OfScatteredRingsHaveBandsOfAllThatWasLearned) {
+  const auto make = [](double highest_deg) {
+    Writer data;
+    for (int i = 0; i < 2000; ++i) {
+      const double elevation_rad = DegToRad(highest_deg * std::sin(0.7 * i));
+      const double azimuth_rad = DegToRad(0.02 * i);
+      data.Number(static_cast<float>(20.0 * std::cos(elevation_rad) * std::cos(azimuth_rad)));
+      data.Number(static_cast<float>(-20.0 * std::cos(elevation_rad) * std::sin(azimuth_rad)));
+      data.Number(static_cast<float>(20.0 * std::sin(elevation_rad))).Number(static_cast<std::uint16_t>(i % 4));
+    }
+    return MakeCloud(Encoding::kRos1, 1, 2000, 14, {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"line", 12, 4}}, data.bytes);
+  };
+  const auto low = make(5.0);
+  const auto high = make(20.0);
+  CloudScans scans;
+  scans.Learn(*ParsePointCloud(Encoding::kRos1, low));
+  scans.Learn(*ParsePointCloud(Encoding::kRos1, high));
+  const auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, high), kMadeStampNs, "model");
+  ASSERT_FALSE(parts.empty());
+  EXPECT_LT(parts[0].elevation_rad.front(), DegToRad(-19.0));
+  EXPECT_GT(parts[0].elevation_rad.back(), DegToRad(19.0));
+  EXPECT_EQ(scans.counts().num_out_of_range + scans.counts().num_no_ring, 0);
+}
+
+// A turn of 16 rings and 100 columns at 1 ms, with these times.
+template <typename T, typename TimeOf>
+Payload MakeTimedTurn(const std::string& field, std::uint8_t type, const TimeOf& time_of) {
+  Writer data;
+  for (int column = 0; column < 100; ++column) {
+    for (int ring = 0; ring < 16; ++ring) {
+      const double elevation_rad = DegToRad(2.0 * ring - 15.0);
+      const double azimuth_rad = kTwoPi * column / 100;
+      data.Number(static_cast<float>(20.0 * std::cos(elevation_rad) * std::cos(azimuth_rad)));
+      data.Number(static_cast<float>(-20.0 * std::cos(elevation_rad) * std::sin(azimuth_rad)));
+      data.Number(static_cast<float>(20.0 * std::sin(elevation_rad))).Number(static_cast<std::uint16_t>(ring));
+      data.Number(static_cast<T>(time_of(column, ring)));
+    }
+  }
+  return MakeCloud(Encoding::kRos1, 1, 1600, static_cast<std::uint32_t>(14 + sizeof(T)),
+                   {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"ring", 12, 4}, {field, 14, type}}, data.bytes);
+}
+
+TEST(CloudScans, AreNotMovedByAPointWithoutATime) {
+  const double stamp_s = static_cast<double>(kMadeStampNs / 1'000'000'000);
+  for (const double begin_s : {stamp_s, 5000.0}) {
+    for (const double bad_s : {0.0, static_cast<double>(NAN), 1e300, stamp_s + 3.0}) {
+      const auto bytes =
+          MakeTimedTurn<double>("timestamp", 8, [&](int column, int ring) { return column == 50 && ring == 3 ? bad_s : begin_s + 1e-3 * column; });
+      CloudScans scans;
+      const auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, bytes), kMadeStampNs, "model");
+      ASSERT_EQ(parts.size(), 1U);
+      EXPECT_NEAR(static_cast<double>(parts[0].utime_us - kMadeStampNs / 1000), 0.0, 2.0) << begin_s << " " << bad_s;
+      EXPECT_NEAR(static_cast<double>(parts[0].end_utime_us - parts[0].utime_us), 99'000.0, 2.0) << begin_s << " " << bad_s;
+      EXPECT_EQ(parts[0].num_turn_columns, 100);
+      EXPECT_EQ(scans.counts().num_no_time, 1);
+      EXPECT_EQ(scans.counts().num_hidden, 0);
+      EXPECT_EQ(scans.Remarks().size(), begin_s == 5000.0 ? 2U : 1U);  // another clock, and no reflectivity
+    }
+  }
+}
+
+TEST(CloudScans, OfTimesInAnotherUnitHaveNone) {
+  const auto microseconds = MakeTimedTurn<float>("time", 7, [](int column, int ring) { return 1000.0 * column + ring; });
+  const auto none = MakeTimedTurn<float>("time", 7, [](int, int) { return NAN; });
+  for (const auto& bytes : {microseconds, none}) {
+    CloudScans scans;
+    const auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, bytes), kMadeStampNs, "model");
+    ASSERT_EQ(parts.size(), 1U);
+    EXPECT_EQ(parts[0].utime_us, kMadeStampNs / 1000);
+    EXPECT_EQ(parts[0].end_utime_us, parts[0].utime_us);
+    EXPECT_EQ(scans.counts().num_times_refused, 1);
+    EXPECT_EQ(scans.counts().num_hidden, 0);
+    EXPECT_NE(scans.Remarks().at(0).find("1 clouds have times of points"), std::string::npos);
+  }
 }
 
 TEST(CloudScans, TakeAWiderUnitWhereAPointIsFartherThan131Metres) {
