@@ -215,7 +215,7 @@ function(lookout_bench)
 endfunction()
 
 # A libFuzzer target, run by ./dev fuzz. Its body is also compiled for lint where fuzzing itself is off.
-#   lookout_fuzz(NAME fuzz_packet SOURCES fuzz/packet_fuzz.cpp LINKS lookout_vlp16_core)
+#   lookout_fuzz(NAME fuzz_packet SOURCES fuzz/packet_fuzz.cpp LINKS lookout_lidar_core)
 add_custom_target(fuzzers)
 function(lookout_fuzz)
   cmake_parse_arguments(fuzz "" "NAME" "SOURCES;LINKS" ${ARGN})

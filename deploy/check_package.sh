@@ -27,7 +27,7 @@ inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONT
 say "an upgrade's package"
 dpkg-deb -R "$package" "$work/next"
 sed -i 's/^Version: .*/Version: 99.0/' "$work/next/DEBIAN/control"
-echo '# the next version of this file' | tee -a "$work/next/etc/lookout/boat/vlp16.txtpb" "$work/next/etc/lookout/boat/boat.txtpb" >/dev/null
+echo '# the next version of this file' | tee -a "$work/next/etc/lookout/boat/lidar.txtpb" "$work/next/etc/lookout/boat/boat.txtpb" >/dev/null
 dpkg-deb --root-owner-group -b "$work/next" "$work/next.deb" >/dev/null
 cp "$package" "$root/root/lookout.deb"
 cp "$work/next.deb" "$root/root/next.deb"
@@ -72,12 +72,12 @@ for unit in "${units[@]}"; do
     { tail -n 1 "$work/security.txt"; fail "exposure of lookout-$unit"; }
   tail -n 1 "$work/security.txt"
 done
-mkdir -p "$root/etc/systemd/system/lookout-vlp16.service.d"
-cp "$root/usr/share/doc/lookout/examples/live-capture.conf" "$root/etc/systemd/system/lookout-vlp16.service.d/"
-inside systemd-analyze verify lookout-vlp16.service || fail "verify with the drop-in"
-inside systemd-analyze security --no-pager --offline=true --threshold=$greatest_exposure lookout-vlp16.service >"$work/security.txt" || fail "exposure with the drop-in"
+mkdir -p "$root/etc/systemd/system/lookout-lidar.service.d"
+cp "$root/usr/share/doc/lookout/examples/live-capture.conf" "$root/etc/systemd/system/lookout-lidar.service.d/"
+inside systemd-analyze verify lookout-lidar.service || fail "verify with the drop-in"
+inside systemd-analyze security --no-pager --offline=true --threshold=$greatest_exposure lookout-lidar.service >"$work/security.txt" || fail "exposure with the drop-in"
 echo "with live-capture.conf: $(tail -n 1 "$work/security.txt")"
-rm -r "$root/etc/systemd/system/lookout-vlp16.service.d"
+rm -r "$root/etc/systemd/system/lookout-lidar.service.d"
 
 nspawn=(systemd-nspawn -q -D "$root" --machine=lookout-check --private-network --register=no --keep-unit)
 start_by_hand() {
@@ -145,29 +145,29 @@ log=$(ls -t /var/lib/lookout/logs/*.lcmlog | head -n 1)
 rows=$(lookout-export --in "$log" --table obstacles | wc -l)
 expect "$rows obstacles recorded after the last end of the recorder" [ "$rows" -gt 1000 ]
 # Reload where the unit has it: same process.
-old=$(systemctl show -P MainPID lookout-vlp16)
-expect "reload of vlp16" systemctl reload lookout-vlp16
+old=$(systemctl show -P MainPID lookout-lidar)
+expect "reload of lidar" systemctl reload lookout-lidar
 sleep 2
-journalctl --no-pager -u lookout-vlp16 | tail -n 4
-expect "vlp16 is active after its reload, the same process" [ "$(systemctl show -P MainPID lookout-vlp16)" = "$old" ]
+journalctl --no-pager -u lookout-lidar | tail -n 4
+expect "lidar is active after its reload, the same process" [ "$(systemctl show -P MainPID lookout-lidar)" = "$old" ]
 expect "reload of the recorder" systemctl reload lookout-recorder
 sleep 1
 expect "a new log for it" [ "$(ls -t /var/lib/lookout/logs/*.lcmlog | head -n 1)" != "$log" ]
 # Capture on an interface: refused as delivered, fine with the drop-in.
-cp /etc/lookout/boat/vlp16.txtpb /root/vlp16.txtpb
-sed -i 's/^source: UDP/source: INTERFACE\ninterface: "lo"/; /^bind_address/d' /etc/lookout/boat/vlp16.txtpb
-systemctl restart lookout-vlp16 2>/dev/null
-expect "no capture without the capability" sh -c '! systemctl -q is-active lookout-vlp16'
-mkdir -p /etc/systemd/system/lookout-vlp16.service.d
-cp /usr/share/doc/lookout/examples/live-capture.conf /etc/systemd/system/lookout-vlp16.service.d/
+cp /etc/lookout/boat/lidar.txtpb /root/lidar.txtpb
+sed -i 's/^source: UDP/source: INTERFACE\ninterface: "lo"/; /^bind_address/d' /etc/lookout/boat/lidar.txtpb
+systemctl restart lookout-lidar 2>/dev/null
+expect "no capture without the capability" sh -c '! systemctl -q is-active lookout-lidar'
+mkdir -p /etc/systemd/system/lookout-lidar.service.d
+cp /usr/share/doc/lookout/examples/live-capture.conf /etc/systemd/system/lookout-lidar.service.d/
 systemctl daemon-reload
-systemctl restart lookout-vlp16
-expect "capture with the drop-in" systemctl -q is-active lookout-vlp16
-journalctl --no-pager -u lookout-vlp16 | grep -E 'captures on|critical' | tail -n 3
-rm -r /etc/systemd/system/lookout-vlp16.service.d
+systemctl restart lookout-lidar
+expect "capture with the drop-in" systemctl -q is-active lookout-lidar
+journalctl --no-pager -u lookout-lidar | grep -E 'captures on|critical' | tail -n 3
+rm -r /etc/systemd/system/lookout-lidar.service.d
 systemctl daemon-reload
-cp /root/vlp16.txtpb /etc/lookout/boat/vlp16.txtpb
-rm /root/vlp16.txtpb
+cp /root/lidar.txtpb /etc/lookout/boat/lidar.txtpb
+rm /root/lidar.txtpb
 systemctl stop lookout.target
 systemctl stop 'lookout-*.service'  # the same once more, but waits
 for unit in UNITS; do
@@ -201,11 +201,11 @@ sed -i 's/^name: .*/name: "mine"/' "$root/etc/lookout/boat/boat.txtpb"
 inside apt-get install -y -qq --no-install-recommends -o Dpkg::Options::=--force-confdef -o Dpkg::Options::=--force-confold /root/next.deb \
   >"$work/upgrade.log" 2>&1 || { tail "$work/upgrade.log" >&2; fail "upgrade"; }
 grep -q '^name: "mine"' "$root/etc/lookout/boat/boat.txtpb" || fail "the changed boat.txtpb was lost"
-grep -q 'the next version' "$root/etc/lookout/boat/vlp16.txtpb" || fail "an unchanged file did not get its new version"
+grep -q 'the next version' "$root/etc/lookout/boat/lidar.txtpb" || fail "an unchanged file did not get its new version"
 say "removes, config stays"
 inside apt-get remove -y -qq lookout >"$work/remove.log" 2>&1 || { tail "$work/remove.log" >&2; fail "remove"; }
 [ -e "$root/etc/lookout/boat/boat.txtpb" ] || fail "remove took the config"
-[ ! -e "$root/usr/bin/lookout-vlp16" ] || fail "remove left programs"
+[ ! -e "$root/usr/bin/lookout-lidar" ] || fail "remove left programs"
 say "purges: nothing is left but recordings"
 inside apt-get purge -y -qq lookout >"$work/purge.log" 2>&1 || { tail "$work/purge.log" >&2; fail "purge"; }
 rm -f "$root/root/lookout.deb" "$root/root/next.deb"

@@ -120,9 +120,9 @@ for port in $(seq 7668 7690); do
 done
 if [ -n "$capture" ]; then
   # The lidar's process reads the capture at the speed at which it was recorded.
-  sed -i 's/^source: UDP/source: CAPTURE/' "$live_config/vlp16.txtpb"
+  sed -i 's/^source: UDP/source: CAPTURE/' "$live_config/lidar.txtpb"
   escaped=${capture//\\/\\\\}
-  printf 'capture_file: "%s"\n' "${escaped//\"/\\\"}" >>"$live_config/vlp16.txtpb"
+  printf 'capture_file: "%s"\n' "${escaped//\"/\\\"}" >>"$live_config/lidar.txtpb"
   # Its position belongs to another day than this computer's clock: live, obstacles stay in the vessel's frame. The replay has both.
   sed -i 's/^use_lidar_nmea: true/use_lidar_nmea: false/' "$live_config/navigator.txtpb"
 fi
@@ -140,11 +140,11 @@ trap cleanup EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 start_all "$live_config" "$work"
-lidar=${live_pids[vlp16]}
+lidar=${live_pids[lidar]}
 if [ -n "$capture" ]; then
-  echo "vlp16 plays $capture (at most 60 s of it)"
+  echo "lidar plays $capture (at most 60 s of it)"
 else
-  kill -0 "$lidar" 2>/dev/null || { cat "$work/vlp16.out" >&2; exit 1; }
+  kill -0 "$lidar" 2>/dev/null || { cat "$work/lidar.out" >&2; exit 1; }
   echo "the simulator sends datagrams to 127.0.0.1 for $seconds s"
   rm -rf "$work/truth-live"
   # In the background: bash heeds a signal while it waits, but not while it runs a program.
@@ -159,7 +159,7 @@ watcher=$!
 [ -z "$plotter_port" ] || (exec 3<>"/dev/tcp/127.0.0.1/$plotter_port" && cat <&3 >"$work/plotter.nmea") 2>/dev/null &
 if [ -n "$capture" ]; then
   for _ in $(seq 600); do kill -0 "$lidar" 2>/dev/null || break; sleep 0.1; done
-  grep -q 'critical' "$work/vlp16.out" && { cat "$work/vlp16.out" >&2; exit 1; }
+  grep -q 'critical' "$work/lidar.out" && { cat "$work/lidar.out" >&2; exit 1; }
 else
   wait "$simulator"
 fi

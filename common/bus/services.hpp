@@ -27,7 +27,7 @@ struct ServiceRow {
 
 // Readers stand behind the publishers of what they read. A boat starts them in the reverse order, so that no reader misses a first message.
 inline constexpr std::array kServices{
-    ServiceRow{"vlp16", "lidar", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {}},
+    ServiceRow{"lidar", "lidar", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {}},
     ServiceRow{"segmenter", "segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan}},
     ServiceRow{"navigator",
                "navigator",

@@ -12,8 +12,8 @@
 #include "lab/sim/random.hpp"
 #include "lab/sim/ray_caster.hpp"
 #include "lab/sim/scene.hpp"
-#include "services/vlp16/core/model.hpp"
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/model.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 
 namespace lookout::sim {
 
@@ -25,7 +25,7 @@ struct LidarParams {
   vlp16::Model model = vlp16::Model::kVlp16;
   Sector field_of_view;  // azimuths of the sensor in which its lasers fire; kMinFieldOfViewRad wide at least
   double rotation_rpm = 600.0;
-  bool use_vertical_origin_offsets = false;  // as in vlp16.txtpb
+  bool use_vertical_origin_offsets = false;  // as in lidar.txtpb
 };
 
 /// What made a return that is not zero.

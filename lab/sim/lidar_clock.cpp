@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 
 namespace lookout::sim {
 namespace {

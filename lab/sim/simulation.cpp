@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "common/config/text_config.hpp"
+#include "config/schema/lidar.pb.h"
 #include "config/schema/navigator.pb.h"
-#include "config/schema/vlp16.pb.h"
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -22,7 +22,7 @@ constexpr double kDataJitterUs = 60.0;
 }  // namespace
 
 SimulationParams ParamsOfConfig(const std::filesystem::path& config_folder, SimulationParams params) {
-  const auto vlp16 = config::Load<config::Vlp16>(config_folder, "vlp16.txtpb");
+  const auto vlp16 = config::Load<config::Lidar>(config_folder, "lidar.txtpb");
   const auto navigator = config::Load<config::Navigator>(config_folder, "navigator.txtpb");
   params.lidar.use_vertical_origin_offsets = vlp16.use_vertical_origin_offsets();
   params.navigation.nmea_port = navigator.nmea_port();

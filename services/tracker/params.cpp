@@ -10,9 +10,9 @@
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "config/schema/lidar.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/tracker.pb.h"
-#include "config/schema/vlp16.pb.h"
 
 namespace lookout::tracker {
 
@@ -42,14 +42,14 @@ GuardZoneParams ToGuardZone(const config::GuardZone& zone) {
           .takes_tentative = zone.takes_tentative()};
 }
 
-// Of the lidar that vlp16.txtpb names. Where there is none, or it is wrong, those of a VLP-16: they serve for words alone.
+// Of the lidar that lidar.txtpb names. Where there is none, or it is wrong, those of a VLP-16: they serve for words alone.
 std::vector<float> ExpectedElevations(const std::filesystem::path& config_folder) {
   constexpr int kNumBeams = 16;
   double most_deg = 15.0;  // VLP-16 User Manual 63-9243 Rev E; Puck Hi-Res 63-9318
   config::FaultList untold;
   untold.Try([&] {
-    const auto lidar = config::Load<config::Vlp16>(config_folder, "vlp16.txtpb");
-    if (lidar.model() == config::Vlp16::MODEL_PUCK_HI_RES) most_deg = 10.0;
+    const auto lidar = config::Load<config::Lidar>(config_folder, "lidar.txtpb");
+    if (lidar.model() == config::Lidar::MODEL_PUCK_HI_RES) most_deg = 10.0;
   });
   std::vector<float> elevation_rad;
   elevation_rad.reserve(kNumBeams);

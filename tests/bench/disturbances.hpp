@@ -7,7 +7,7 @@
 
 #include "tests/bench/bus_tap.hpp"
 #include "tests/support/socket.hpp"
-#include "tests/unit/vlp16/packet_maker.hpp"
+#include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::bench {
 

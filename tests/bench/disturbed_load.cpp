@@ -103,7 +103,7 @@ class DisturbedRun {
     fs::copy(demo, folder_ / "other");
     std::ofstream(folder_ / "other/boat.txtpb", std::ios::app) << "\ndatum { latitude_deg: 44.0 longitude_deg: -72.15 ellipsoid_height_m: 201 }\n";
     std::ofstream(folder_ / "other/navigator.txtpb", std::ios::app) << "\nnmea_port: 11110\n";
-    std::ofstream(folder_ / "other/vlp16.txtpb", std::ios::app) << "\ndata_port: 12368\nposition_port: 18308\n";
+    std::ofstream(folder_ / "other/lidar.txtpb", std::ios::app) << "\ndata_port: 12368\nposition_port: 18308\n";
   }
 
   // A computer at the other end of a cable.
@@ -234,7 +234,7 @@ class DisturbedRun {
       judge_.AddOther(other_boat_.back()->pid());
     };
     start("navigator", {});
-    start("vlp16", {});
+    start("lidar", {});
     start("sim", {"--scene", "crossing", "--seed", "7", "--seconds", "60", "--udp", "127.0.0.1"});
     RunFor(duration);
     for (auto& child : other_boat_) child->Signal(SIGTERM);

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "services/vlp16/io/capture_reader.hpp"
+#include "services/lidar/io/capture_reader.hpp"
 
 namespace {
 
@@ -17,7 +17,7 @@ void ReadAsFile(const std::uint8_t* data, std::size_t size) {
   if (file < 0) std::abort();
   if (write(file, data, size) != static_cast<ssize_t>(size)) std::abort();
   try {
-    lookout::vlp16::CaptureReader reader("/proc/self/fd/" + std::to_string(file));
+    lookout::lidar::CaptureReader reader("/proc/self/fd/" + std::to_string(file));
     while (reader.Next()) continue;
   } catch (const std::runtime_error&) {
     // No capture: said, not a fault.
@@ -30,7 +30,7 @@ void ReadAsFile(const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr int kHighestLinkType = 300;
   for (int link_type = 0; link_type < kHighestLinkType; ++link_type) {
-    if (lookout::vlp16::IsLinkTypeUnderstood(link_type)) lookout::vlp16::ParseFrame(link_type, {data, size}, size % 2 == 0);
+    if (lookout::lidar::IsLinkTypeUnderstood(link_type)) lookout::lidar::ParseFrame(link_type, {data, size}, size % 2 == 0);
   }
   ReadAsFile(data, size);
   return 0;

@@ -6,11 +6,11 @@
 #include "common/config/text_config.hpp"
 #include "config/schema/boat.pb.h"
 #include "config/schema/georeferencer.pb.h"
+#include "config/schema/lidar.pb.h"
 #include "config/schema/navigator.pb.h"
 #include "config/schema/recorder.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/tracker.pb.h"
-#include "config/schema/vlp16.pb.h"
 
 namespace {
 
@@ -35,6 +35,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ParseAs<lookout::config::Navigator>(text);
   ParseAs<lookout::config::Recorder>(text);
   ParseAs<lookout::config::Segmenter>(text);
-  ParseAs<lookout::config::Vlp16>(text);
+  ParseAs<lookout::config::Lidar>(text);
   return 0;
 }

@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "common/core/angles.hpp"
-#include "services/vlp16/core/decoder.hpp"
-#include "services/vlp16/core/foreign_sensor.hpp"
-#include "services/vlp16/wire.hpp"
+#include "services/lidar/core/vlp16/decoder.hpp"
+#include "services/lidar/core/vlp16/foreign_sensor.hpp"
+#include "services/lidar/wire.hpp"
 #include "tests/fuzz/packet_script.hpp"
 
 namespace {
@@ -46,7 +46,7 @@ void CheckTurn(const Scan& turn, std::int64_t& last_number) {
   Expect(std::ranges::all_of(turn.azimuth_rad, [](float angle_rad) { return angle_rad >= 0.0F && angle_rad <= kCircle; }));
   for (std::size_t cell = 0; cell < turn.range.size(); ++cell) Expect(turn.range[cell] != 0 || turn.reflectivity[cell] == 0);
   Expect(std::isfinite(turn.rate_radps));
-  for (const auto& part : ToScanMessages(turn, 0, true, kMaxMessageBytes)) Expect(part.getEncodedSize() <= kMaxMessageBytes);
+  for (const auto& part : ToScanMessages(turn, 0, kMaxMessageBytes)) Expect(part.getEncodedSize() <= kMaxMessageBytes);
 }
 
 DecoderParams ParamsOf(Bytes head) {

@@ -11,14 +11,14 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/bus/schema.hpp"
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 #include "tests/fuzz/corpus.hpp"
 #include "tests/fuzz/packet_script.hpp"
 #include "tests/unit/data/cloud_text.hpp"
+#include "tests/unit/lidar/packet_maker.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
-#include "tests/unit/vlp16/packet_maker.hpp"
 #include "tests/unit/wire/filled_messages.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 
 namespace lookout::vlp16::script {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "services/vlp16/core/position_packet.hpp"
+#include "services/lidar/core/vlp16/position_packet.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto result = lookout::vlp16::ParsePositionPacket({data, size});

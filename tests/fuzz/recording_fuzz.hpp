@@ -11,7 +11,7 @@
 namespace lookout::importer {
 
 inline void ImportAll(Recording& recording, const Topics& topics) {
-  const vlp16::Params params;
+  const lidar::Params params;
   LogMaker log(params, true, [](Utime, const bus::Channel&, Bytes bytes) {
     if (bytes.size() > static_cast<std::size_t>(bus::kMaxMessageBytes)) std::abort();
   });

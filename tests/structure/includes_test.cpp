@@ -163,7 +163,7 @@ TEST(Structure, NothingThatSailsIncludesTheLaboratory) {
 // Data and the simulator know nothing of what is measured on them.
 TEST(Structure, FoldersOfTheLaboratoryIncludeOnlyWhatTheyMay) {
   const std::map<std::string, std::regex> allowed{{"data", std::regex("common/.*|services/segmenter/core/.*|tools/import/.*|lab/data/.*")},
-                                                  {"sim", std::regex("common/.*|services/vlp16/.*|lab/sim/.*")},
+                                                  {"sim", std::regex("common/.*|services/lidar/.*|lab/sim/.*")},
                                                   {"eval", std::regex("common/.*|services/.*|tools/.*|lab/(data|sim|eval)/.*")},
                                                   {"eval/methods", std::regex("(?!lab/eval/(tracks|report)).*")},
                                                   {"eval/tracks", std::regex("(?!lab/eval/report).*")},

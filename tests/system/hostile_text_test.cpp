@@ -97,8 +97,8 @@ TEST_F(HostileText, OfALogReachesNoTerminalAsAnEscapeSequence) {
 }
 
 TEST_F(HostileText, OfAConfigReachesNoTerminalAsAnEscapeSequence) {
-  std::ofstream(Path("config/vlp16.txtpb")) << "source: UDP\nbind_address: '" << kEvil << "'\ncut_azimuth_deg: 0\n" << kEvil << "\n";
-  const auto result = Run("vlp16", {"--config", Path("config"), "--check"});
+  std::ofstream(Path("config/lidar.txtpb")) << "source: UDP\nbind_address: '" << kEvil << "'\ncut_azimuth_deg: 0\n" << kEvil << "\n";
+  const auto result = Run("lidar", {"--config", Path("config"), "--check"});
   EXPECT_EQ(result.exit_code, 2);
   ExpectPrintable(result, "vlp16 --check");
 }

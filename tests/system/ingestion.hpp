@@ -1,4 +1,4 @@
-// A live lookout-vlp16 with what it says of itself, and a lidar that keeps its deadlines: what the tests and the load of ingestion share.
+// A live lookout-lidar with what it says of itself, and a lidar that keeps its deadlines: what the tests and the load of ingestion share.
 #pragma once
 
 #include <arpa/inet.h>
@@ -28,7 +28,7 @@
 #include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/socket.hpp"
-#include "tests/unit/vlp16/packet_maker.hpp"
+#include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::system_test {
 
@@ -36,7 +36,7 @@ using support::Child;
 using support::RunProgram;
 using support::RunResult;
 
-/// lookout-vlp16 with the config of the simulated boat, on loopback.
+/// lookout-lidar with the config of the simulated boat, on loopback.
 class LiveVlp16 {
  public:
   /// @param folder  for its config and what it prints; made here
@@ -44,9 +44,9 @@ class LiveVlp16 {
     std::filesystem::create_directories(folder);
     std::filesystem::copy(support::kDemoConfig, config_folder_);
     bus::Subscribe<health_t>(bus_, bus::kHealth, [this](const health_t& message) {
-      if (message.process == "vlp16") health_ = message;
+      if (message.process == "lidar") health_ = message;
     });
-    process_.emplace(std::vector<std::string>{support::Bin("vlp16"), "--config", config_folder_.string()}, (folder / "vlp16.out").string());
+    process_.emplace(std::vector<std::string>{support::Bin("lidar"), "--config", config_folder_.string()}, (folder / "vlp16.out").string());
   }
 
   const std::filesystem::path& config_folder() const { return config_folder_; }
@@ -83,7 +83,7 @@ class LiveVlp16 {
   std::optional<Child> process_;
 };
 
-/// What the counters of a lookout-vlp16 must be when so many different packets came, each once and in order.
+/// What the counters of a lookout-lidar must be when so many different packets came, each once and in order.
 inline std::vector<std::pair<std::string_view, std::int64_t>> CountersOfACleanRun(std::int64_t num_sent) {
   return {{"data_packets_whole", num_sent},
           {"data_lost", 0},

@@ -1,4 +1,4 @@
-// lookout-vlp16 live on loopback, in a network namespace of its own: it counts exactly what happened to the datagrams.
+// lookout-lidar live on loopback, in a network namespace of its own: it counts exactly what happened to the datagrams.
 #include "tests/system/ingestion.hpp"
 
 #include <gtest/gtest.h>

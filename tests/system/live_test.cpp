@@ -36,7 +36,7 @@ class Live : public LiveTest {
   // All that `services` names, the lidar last so that nobody misses its start mark.
   void StartAll() {
     for (const auto& service : kServices) {
-      if (service == "vlp16" || service == "navigator") std::this_thread::sleep_for(milliseconds(700));
+      if (service == "lidar" || service == "navigator") std::this_thread::sleep_for(milliseconds(700));
       Start(service);
     }
     std::this_thread::sleep_for(milliseconds(700));
@@ -110,7 +110,7 @@ TEST_F(Live, AnUnpluggedLidarDegradesHealthAndRecovers) {
   const auto live = ReadLog(Log());
   for (const auto& bytes : live.at("HEALTH")) {
     const auto message = bus::Decode<health_t>(bytes);
-    if (message && message->process == "vlp16" && (states.empty() || states.back() != message->state)) states.push_back(message->state);
+    if (message && message->process == "lidar" && (states.empty() || states.back() != message->state)) states.push_back(message->state);
   }
   // Fine while packets come, degraded while none do, fine again; on a slow computer degraded before and after as well.
   const std::vector<int> expected{health_t::STATE_OK, health_t::STATE_DEGRADED, health_t::STATE_OK};

@@ -33,7 +33,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 // Sources end first, so that what they send at their end still finds its takers.
-const std::vector<std::string> kFromSourceToLog{"vlp16", "navigator", "segmenter", "georeferencer", "tracker", "recorder"};
+const std::vector<std::string> kFromSourceToLog{"lidar", "navigator", "segmenter", "georeferencer", "tracker", "recorder"};
 
 int DataSeconds() {
   const char* text = std::getenv("LOOKOUT_PROOF_SECONDS");
@@ -98,7 +98,7 @@ class Proof : public LiveTest {
     fs::copy(kDemoConfig, folder_ / run / "config");
     fs::current_path(folder_ / run);
     if (is_played) {
-      ReplaceIn("config/vlp16.txtpb", "source: UDP", "source: LOG");
+      ReplaceIn("config/lidar.txtpb", "source: UDP", "source: LOG");
       ReplaceIn("config/navigator.txtpb", "source: LIVE", "source: LOG");
     }
     heard_.clear();
@@ -131,7 +131,7 @@ class Proof : public LiveTest {
         const auto until = std::chrono::steady_clock::now() + milliseconds(50);
         while (std::chrono::steady_clock::now() < until) lcm_->HandleOnce(milliseconds(10));
         // The live navigator never ends: it ticks.
-        num_silent = service == "vlp16" || service == "navigator" || before == counts_ ? num_silent + 1 : 0;
+        num_silent = service == "lidar" || service == "navigator" || before == counts_ ? num_silent + 1 : 0;
       }
       EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
     }
@@ -145,7 +145,7 @@ class Proof : public LiveTest {
   Payloads RunLive(const std::string& run) {
     EnterRun(run, false);
     Start({"recorder", "tracker", "georeferencer", "segmenter"});
-    Start({"navigator", "vlp16"});  // nobody misses their start marks
+    Start({"navigator", "lidar"});  // nobody misses their start marks
     const auto sim = RunProgram(
         {Bin("sim"), "--config", "config", "--scene", "lake", "--seed", "3", "--seconds", std::to_string(DataSeconds()), "--udp", "127.0.0.1"},
         "sim.out");
@@ -159,7 +159,7 @@ class Proof : public LiveTest {
     WriteFile("config/tracker.txtpb", ReadFile("config/tracker.txtpb") + "wait_timeout_s: 20\n");
     ReplaceIn("config/georeferencer.txtpb", "pose_timeout_s: 0.5", "pose_timeout_s: 20");
     Start({"recorder", "tracker", "georeferencer", "segmenter"});
-    Start({"navigator", "vlp16"});
+    Start({"navigator", "lidar"});
     Child sim(
         {Bin("sim"), "--config", "config", "--scene", "lake", "--seed", "3", "--seconds", std::to_string(DataSeconds() + 2), "--udp", "127.0.0.1"},
         "sim.out");
@@ -277,7 +277,7 @@ TEST_P(ProofOfARestart, IsReplayedSo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracker, ProofOfARestart,
-                         ::testing::Values(std::pair("tracker", SIGKILL), std::pair("tracker", SIGTERM), std::pair("vlp16", SIGKILL),
+                         ::testing::Values(std::pair("tracker", SIGKILL), std::pair("tracker", SIGTERM), std::pair("lidar", SIGKILL),
                                            std::pair("navigator", SIGKILL)),
                          [](const auto& test) { return test.param.first + (test.param.second == SIGKILL ? "Killed" : "Terminated"); });
 

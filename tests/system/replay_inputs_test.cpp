@@ -33,7 +33,7 @@ struct RealCapture {
 class ReplayOfRealCaptures : public Replay, public ::testing::WithParamInterface<RealCapture> {};
 
 TEST_P(ReplayOfRealCaptures, CutsTurnsAndGivesTheSameBytesEachTime) {
-  const auto capture = data_ / "vlp16" / GetParam().file;
+  const auto capture = data_ / "lidar" / GetParam().file;
   if (!fs::exists(capture)) GTEST_SKIP() << "no recording at " << capture;
   ExpectSameBytes(capture.string());
   EXPECT_EQ(CountTurns("first"), std::pair(GetParam().num_whole, GetParam().num_partial));
@@ -111,12 +111,12 @@ TEST_F(Replay, DoesNotOverwriteItsInput) {
 
 TEST_F(Replay, SaysWhichLineOfAConfigIsWrong) {
   fs::copy(config_, folder_ / "config");
-  const auto text = ReadFile(folder_ / "config/vlp16.txtpb");
+  const auto text = ReadFile(folder_ / "config/lidar.txtpb");
   const auto line = std::to_string(std::ranges::count(text, '\n') + 1);
-  std::ofstream(folder_ / "config/vlp16.txtpb", std::ios::app) << "no_such_field: 1\n";
+  std::ofstream(folder_ / "config/lidar.txtpb", std::ios::app) << "no_such_field: 1\n";
   const auto result = RunProgram({Bin("replay"), "--config", Path("config"), "--check"}, Path("check.out"));
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.output.find("vlp16.txtpb:" + line + ": "), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("lidar.txtpb:" + line + ": "), std::string::npos) << result.output;
 }
 
 TEST_F(Replay, ChecksTheConfigAndPrintsWhatIsInForce) {

@@ -42,7 +42,7 @@ TEST_F(Replay, FromAnyLevelGivesTheSameBytes) {
       {{"--from", "SEGMENTS", "--from", "POSE"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
       {{"--from", "OBSTACLES"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
       {{"--from", "POSE"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
-      {{"--only", "vlp16"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA"}},
+      {{"--only", "lidar"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA"}},
       {{"--only", "segmenter"}, {"LIDAR_SCAN", "SEGMENTS"}},
       {{"--only", "navigator"}, {"NAV_RAW", "GNSS_FIX", "ATTITUDE", "POSE"}},
       {{"--only", "segmenter", "--only", "georeferencer"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES"}}};
@@ -75,7 +75,7 @@ TEST_F(Replay, RefusesAPartThatTheLogDoesNotAllow) {
   const auto lacking = ReplayTo(Path("part"), "none", {"--from", "LIDAR_SCAN"});
   EXPECT_EQ(lacking.exit_code, 1);
   EXPECT_NE(lacking.output.find("part: --from LIDAR_SCAN: the input does not hold it"), std::string::npos) << lacking.output;
-  EXPECT_EQ(ReplayTo(Path("day"), "none", {"--from", "LIDAR_SCAN", "--only", "vlp16"}).exit_code, 2);
+  EXPECT_EQ(ReplayTo(Path("day"), "none", {"--from", "LIDAR_SCAN", "--only", "lidar"}).exit_code, 2);
   EXPECT_EQ(ReplayTo(Path("day"), "none", {"--from", "HEALTH"}).exit_code, 2);
   EXPECT_EQ(ReplayTo(Path("sim.pcap"), "none", {"--from", "LIDAR_SCAN"}).exit_code, 2);
 }
@@ -162,7 +162,7 @@ TEST_F(Replay, OfALogThatWasCutAndHoldsNoNavigationGivesItsObstaclesAllTheSame) 
       if (event->channel == "LIDAR_PACKETS" && num_bundles < 60) writer.Write(event->time, event->channel, event->bytes);
     }
   }
-  const auto result = ReplayTo(Path("lidar"), "again", {"--only", "vlp16", "--only", "segmenter", "--only", "georeferencer"});
+  const auto result = ReplayTo(Path("lidar"), "again", {"--only", "lidar", "--only", "segmenter", "--only", "georeferencer"});
   EXPECT_EQ(result.exit_code, 0) << result.output;
   auto again = PayloadsByChannel("again");
   EXPECT_GT(again["OBSTACLES"].size(), 5U) << result.output;
@@ -174,10 +174,10 @@ TEST_F(Replay, SaysWhatItsResultLacksAndWhy) {
   MakeDay();
   EXPECT_EQ(ReplayTo(Path("sim.pcap"), "whole").output.find("no lidar packet"), std::string::npos);
   fs::copy(config_, Path("other"));
-  std::ofstream(Path("other/vlp16.txtpb"), std::ios::app) << "\ndata_port: 2399\n";
+  std::ofstream(Path("other/lidar.txtpb"), std::ios::app) << "\ndata_port: 2399\n";
   const auto result = ReplayWith(Path("other"), Path("sim.pcap"), "part");
   EXPECT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_NE(result.output.find("no lidar packet came to port 2399 (data_port of vlp16.txtpb): no scans, segments, obstacles, tracks and alerts are "
+  EXPECT_NE(result.output.find("no lidar packet came to port 2399 (data_port of lidar.txtpb): no scans, segments, obstacles, tracks and alerts are "
                                "computed; datagrams came to other ports: 2368 ("),
             std::string::npos)
       << result.output;

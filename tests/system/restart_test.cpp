@@ -75,7 +75,7 @@ class Watch {
 const bus::Channel& OutputOf(const std::string& process) {
   static const std::map<std::string, const bus::Channel*> kOutputs{
       {"recorder", &bus::kObstacles},      {"page", &bus::kHealth},        {"plotter", &bus::kHealth}, {"tracker", &bus::kAlerts},
-      {"georeferencer", &bus::kObstacles}, {"segmenter", &bus::kSegments}, {"navigator", &bus::kPose}, {"vlp16", &bus::kLidarScan}};
+      {"georeferencer", &bus::kObstacles}, {"segmenter", &bus::kSegments}, {"navigator", &bus::kPose}, {"lidar", &bus::kLidarScan}};
   return *kOutputs.at(process);
 }
 

@@ -1,4 +1,4 @@
-// What the tests of lookout-vlp16 on its sources share. They run in a network namespace of their own, as its root.
+// What the tests of lookout-lidar on its sources share. They run in a network namespace of their own, as its root.
 #pragma once
 
 #include <arpa/inet.h>
@@ -22,7 +22,7 @@
 #include "tests/support/files.hpp"
 #include "tests/support/live_bus.hpp"
 #include "tests/support/socket.hpp"
-#include "tests/unit/vlp16/packet_maker.hpp"
+#include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::system_test {
 
@@ -163,8 +163,8 @@ class SourcesTest : public ::testing::Test {
     }
   }
 
-  void WriteConfig(const std::string& text) const { std::ofstream(folder_ / "vlp16.txtpb") << text << '\n'; }
-  std::string Program() const { return support::Bin("vlp16"); }
+  void WriteConfig(const std::string& text) const { std::ofstream(folder_ / "lidar.txtpb") << text << '\n'; }
+  std::string Program() const { return support::Bin("lidar"); }
   void Start(const std::string& config) {
     WriteConfig(config);
     child_ = std::make_unique<Child>(std::vector<std::string>{Program(), "--config", folder_.string()}, (folder_ / "out").string());

@@ -1,4 +1,4 @@
-// lookout-vlp16 on its sources: sockets, an interface, captures.
+// lookout-lidar on its sources: sockets, an interface, captures.
 #include "tests/system/sources.hpp"
 
 namespace lookout::system_test {

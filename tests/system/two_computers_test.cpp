@@ -135,7 +135,7 @@ class TwoComputers : public LiveTest {
 };
 
 void TwoComputers::LiveThroughAPulledCable(Out out) {
-  const std::vector<std::string> on_first{"navigator", "vlp16"};
+  const std::vector<std::string> on_first{"navigator", "lidar"};
   const std::vector<std::string> on_second{"recorder", "tracker", "georeferencer", "segmenter"};
   bus::LcmBus lcm(bus::DefaultLcmUrl());
   std::int64_t num_scans = 0;  // of this computer's own vlp16, cable or not
@@ -178,7 +178,7 @@ void TwoComputers::LiveThroughAPulledCable(Out out) {
   }));
 
   simulator.Terminate();
-  for (const auto& service : {"vlp16", "navigator", "segmenter", "georeferencer", "tracker", "recorder"}) {
+  for (const auto& service : {"lidar", "navigator", "segmenter", "georeferencer", "tracker", "recorder"}) {
     EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
   }
   auto health = HealthInLog();

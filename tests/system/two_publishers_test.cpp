@@ -151,7 +151,7 @@ class TwoPublishers : public LiveTest {
 };
 
 TEST_F(TwoPublishers, OfPoseNoObstacleIsPlacedByTheSecondAndAllIsToldOf) {
-  for (const std::string name : {"recorder", "georeferencer", "segmenter", "navigator", "vlp16"}) Start(name, name, "config");
+  for (const std::string name : {"recorder", "georeferencer", "segmenter", "navigator", "lidar"}) Start(name, name, "config");
   ASSERT_TRUE(WaitUntil([&] { return health_.size() == 5; }));
   Child sim({Bin("sim"), "--config", "config", "--scene", "lake", "--seed", "3", "--seconds", "60", "--udp", "127.0.0.1"}, "sim.out");
   ASSERT_TRUE(WaitUntil([&] { return num_placed_ >= 50; })) << sim.Output();
@@ -176,7 +176,7 @@ TEST_F(TwoPublishers, OfPoseNoObstacleIsPlacedByTheSecondAndAllIsToldOf) {
   std::cout << num_placed_ << " obstacles placed, " << num_off_ << " off, the furthest " << greatest_off_m_ << " m from the first\n";
 
   sim.Terminate();
-  for (const std::string name : {"vlp16", "navigator", "segmenter", "georeferencer", "recorder"}) {
+  for (const std::string name : {"lidar", "navigator", "segmenter", "georeferencer", "recorder"}) {
     EXPECT_EQ(children_[name]->Terminate().value_or(-1), 0) << name << ": " << children_[name]->Output();
   }
   fs::path log;

@@ -7,8 +7,8 @@
 
 #include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
+#include "services/lidar/core/vlp16/model.hpp"
 #include "services/tracker/params_text.hpp"
-#include "services/vlp16/core/model.hpp"
 #include "tools/doctor/findings.hpp"
 
 namespace lookout::doctor {

@@ -7,7 +7,7 @@
 
 #include "common/core/utime.hpp"
 #include "lookout/lidar_scan_t.hpp"
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 #include "tools/doctor/findings.hpp"
 
 namespace lookout::doctor {
@@ -22,12 +22,12 @@ constexpr const char* kClockSubject = "clock";
 constexpr double kMaxLostShare = 0.01;
 // After such a silence vlp16 complains.
 constexpr double kLidarSilenceS = 1.0;
-// As vlp16's TIME_AUTO (vlp16.proto).
+// As vlp16's TIME_AUTO (lidar.proto).
 constexpr double kMaxClockDifferenceS = 0.25;
 constexpr const char* kFactorySensor = "192.168.1.201";  // VLP-16 User Manual 63-9243 Rev E: as delivered; sends to 255.255.255.255
 constexpr const char* kLidarCure =
     "check the lidar's power and cable; open its page http://192.168.1.201 (as delivered): its destination must be this computer or "
-    "255.255.255.255, with the ports of vlp16.txtpb; check that a firewall lets UDP in";
+    "255.255.255.255, with the ports of lidar.txtpb; check that a firewall lets UDP in";
 
 std::string InterfacesInWords(const std::vector<InterfaceSeen>& interfaces) {
   std::vector<std::string> words;
@@ -59,7 +59,7 @@ Finding CheckSender(const Observations& seen, const std::string& sender, std::in
       allowed.empty() || std::ranges::any_of(allowed, [&address](const std::string& text) { return io::ParseIpAddress(text) == address; });
   if (!is_allowed) {
     return Warning(kNetworkSubject, words + ": refused, because allowed_source_address does not name it",
-                   "if that is the lidar: allowed_source_address: \"" + sender + "\" in vlp16.txtpb");
+                   "if that is the lidar: allowed_source_address: \"" + sender + "\" in lidar.txtpb");
   }
   const auto own = std::ranges::find_if(seen.interfaces, [&address](const auto& interface) { return address && IsInNetwork(interface, *address); });
   if (own == seen.interfaces.end()) {
@@ -103,7 +103,7 @@ Finding CheckPackets(const Observations& seen) {
   if (lidar.model.empty()) {
     return Fault(kLidarSubject,
                  Count(lidar.num_packets, "packet") + ", but no scan was made of them" + (lidar.complaint.empty() ? "" : ": " + lidar.complaint),
-                 "model in vlp16.txtpb; services/vlp16/README.md says which sensors are read");
+                 "model in lidar.txtpb; services/lidar/README.md says which sensors are read");
   }
   const double span_s = ToSeconds(lidar.last - lidar.first);
   const double rate_hz = span_s > 0.0 ? static_cast<double>(lidar.num_packets - 1) / span_s : 0.0;
@@ -120,7 +120,7 @@ Finding CheckPackets(const Observations& seen) {
     }
   }
   if (!lidar.complaint.empty())
-    return Warning(kLidarSubject, words + "; " + lidar.complaint, "services/vlp16/README.md tells what each complaint means");
+    return Warning(kLidarSubject, words + "; " + lidar.complaint, "services/lidar/README.md tells what each complaint means");
   return Ok(kLidarSubject, words);
 }
 
@@ -139,7 +139,7 @@ constexpr std::array kClockStates{
                "the receiver's PPS and serial lines to the lidar's interface box"},
     ClockState{lidar_clock_t::STATE_ERROR, "the lidar says that its PPS is wrong", "PPS once a second, 3 to 15 V, at the lidar's interface box"}};
 constexpr ClockState kClockNotKnown{lidar_clock_t::STATE_UNKNOWN, "no position packets of the lidar, so the state of its clock is not known",
-                                    "position_port in vlp16.txtpb and in the lidar; a firewall"};
+                                    "position_port in lidar.txtpb and in the lidar; a firewall"};
 
 Finding CheckSensorClock(const lidar_clock_t& clock) {
   const std::string source = clock.time_source == lidar_clock_t::TIME_SENSOR ? "; scans have the sensor's time" : "; scans have this computer's time";
@@ -159,13 +159,13 @@ Finding CheckSensorClock(const lidar_clock_t& clock) {
 }  // namespace
 
 Findings CheckLidar(const Observations& seen) {
-  if (!seen.config.lidar) return {Warning(kLidarSubject, "not checked: vlp16.txtpb is wrong", "correct it first")};
+  if (!seen.config.lidar) return {Warning(kLidarSubject, "not checked: lidar.txtpb is wrong", "correct it first")};
   const auto& lidar = seen.lidar;
   const auto kind = seen.config.lidar->sources.kind;
-  const bool is_sensor = kind == vlp16::Sources::Kind::kUdp || kind == vlp16::Sources::Kind::kInterface;
-  if (!is_sensor) return {Warning(kLidarSubject, "vlp16.txtpb names captures or a log: no sensor is checked", "source: UDP for a sensor")};
+  const bool is_sensor = kind == lidar::Sources::Kind::kUdp || kind == lidar::Sources::Kind::kInterface;
+  if (!is_sensor) return {Warning(kLidarSubject, "lidar.txtpb names captures or a log: no sensor is checked", "source: UDP for a sensor")};
   if (!lidar.fault.empty()) {
-    return {Fault(kLidarSubject, lidar.fault, "correct what the line names; if lookout-vlp16 is running on another bus, end it")};
+    return {Fault(kLidarSubject, lidar.fault, "correct what the line names; if lookout-lidar is running on another bus, end it")};
   }
   Findings findings{CheckPackets(seen)};
   for (const auto& [sender, num_datagrams] : lidar.num_by_sender) findings.push_back(CheckSender(seen, sender, num_datagrams));

@@ -27,13 +27,13 @@
 #include "common/config/text_config.hpp"
 #include "common/io/disk_reserve.hpp"
 #include "common/runtime/process.hpp"
+#include "services/lidar/sources.hpp"
 #include "services/page/params.hpp"
 #include "services/page/tiles.hpp"
 #include "services/page/token.hpp"
 #include "services/plotter/params.hpp"
 #include "services/recorder/params.hpp"
 #include "services/tracker/params.hpp"
-#include "services/vlp16/sources.hpp"
 #include "tools/doctor/config_checks.hpp"
 
 namespace lookout::doctor {
@@ -133,7 +133,7 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
     if (row.config_may_be_absent && !fs::exists(config_folder / file_name)) continue;
     check(file_name, [&] { service.load(config_folder); });
   }
-  check("vlp16.txtpb", [&] { seen.lidar = vlp16::LoadChecked(config_folder); });
+  check("lidar.txtpb", [&] { seen.lidar = lidar::LoadChecked(config_folder); });
   // Values for other findings. Faults of these files are told already.
   const auto look = [](const std::function<void()>& load) { config::FaultList().Try(load); };
   look([&] { seen.navigation = navigator::LoadParams(config_folder); });

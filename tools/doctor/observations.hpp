@@ -18,10 +18,10 @@
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_clock_t.hpp"
 #include "lookout/pose_t.hpp"
+#include "services/lidar/params.hpp"
 #include "services/navigator/params.hpp"
 #include "services/page/params.hpp"
 #include "services/tracker/params.hpp"
-#include "services/vlp16/params.hpp"
 
 namespace lookout::doctor {
 
@@ -29,7 +29,7 @@ namespace lookout::doctor {
 struct ConfigSeen {
   std::map<std::string, std::vector<std::string>> files;  // by name, without the folder: lines "path:line: field: reason"; none = it is right
   std::optional<config::BoatFacts> boat;
-  std::optional<vlp16::Params> lidar;
+  std::optional<lidar::Params> lidar;
   std::optional<navigator::Params> navigation;
   std::optional<tracker::Params> tracker;
   std::optional<std::filesystem::path> log_folder;  // as the recorder's config says: may be relative

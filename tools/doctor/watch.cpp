@@ -20,12 +20,12 @@
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/tracks_t.hpp"
+#include "services/lidar/service.hpp"
+#include "services/lidar/sources.hpp"
 #include "services/navigator/service.hpp"
 #include "services/navigator/sources.hpp"
 #include "services/tracker/alert_text.hpp"
 #include "services/tracker/wire.hpp"
-#include "services/vlp16/service.hpp"
-#include "services/vlp16/sources.hpp"
 
 namespace lookout::doctor {
 
@@ -45,17 +45,17 @@ std::string LidarService() { return std::string(bus::PublisherName(bus::kLidarSc
 // Taken from one source before the others get their turn: 100 ms of packets in dual return.
 constexpr int kMaxDatagramsPerPoll = 150;
 
-// Reads the lidar's datagrams as lookout-vlp16 does, and publishes on `bus` as it would.
+// Reads the lidar's datagrams as lookout-lidar does, and publishes on `bus` as it would.
 class OwnLidar {
  public:
   /// @throws std::runtime_error when a port or the interface cannot be opened
-  OwnLidar(bus::Bus& bus, const vlp16::Params& params) : params_(params), service_(bus, params) {
-    if (params.sources.kind == vlp16::Sources::Kind::kInterface) {
-      sources_.push_back(std::make_unique<vlp16::LiveCapture>(vlp16::ToLiveOptions(params)));
+  OwnLidar(bus::Bus& bus, const lidar::Params& params) : params_(params), service_(bus, params) {
+    if (params.sources.kind == lidar::Sources::Kind::kInterface) {
+      sources_.push_back(std::make_unique<lidar::LiveCapture>(lidar::ToLiveOptions(params)));
       return;
     }
     for (const int port : {params.data_port, params.position_port}) {
-      auto options = vlp16::ToUdpOptions(params.sources, port);
+      auto options = lidar::ToUdpOptions(params.sources, port);
       options.allowed_source_addresses.clear();  // every sender is to be seen; which is allowed is decided here
       sources_.push_back(std::make_unique<io::UdpReceiver>(options));
     }
@@ -64,7 +64,7 @@ class OwnLidar {
   /// Takes waiting datagrams. @param seen  gets senders and complaint
   void Poll(Utime now, LidarSeen& seen) {
     const auto& allowed = params_.sources.allowed_source_addresses;
-    const bool is_udp = params_.sources.kind == vlp16::Sources::Kind::kUdp;
+    const bool is_udp = params_.sources.kind == lidar::Sources::Kind::kUdp;
     for (auto& source : sources_) {
       source->Poll(now);
       for (int i = 0; i < kMaxDatagramsPerPoll; ++i) {
@@ -82,8 +82,8 @@ class OwnLidar {
   }
 
  private:
-  vlp16::Params params_;
-  vlp16::Service service_;
+  lidar::Params params_;
+  lidar::Service service_;
   std::vector<std::unique_ptr<io::Source>> sources_;
 };
 
@@ -171,7 +171,7 @@ class Watcher {
     if (seen_.processes.contains(LidarService())) {
       seen_.lidar.via = Via::kBus;
     } else if (config.lidar &&
-               (config.lidar->sources.kind == vlp16::Sources::Kind::kUdp || config.lidar->sources.kind == vlp16::Sources::Kind::kInterface)) {
+               (config.lidar->sources.kind == lidar::Sources::Kind::kUdp || config.lidar->sources.kind == lidar::Sources::Kind::kInterface)) {
       seen_.lidar.via = Via::kItself;
       try {
         lidar_.emplace(memory_, *config.lidar);

@@ -13,7 +13,7 @@
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/run_info.hpp"
-#include "services/vlp16/params.hpp"
+#include "services/lidar/params.hpp"
 #include "tools/import/log_maker.hpp"
 #include "tools/import/ros_import.hpp"
 
@@ -174,7 +174,7 @@ bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, st
   const auto map_text = TopicMapText(topics, map);
   notes << (request.topic_map_file ? "" : "lookout-import: guessed; to change it, keep these lines in a file, edit it and give it as --topics\n")
         << map_text;
-  const auto params = vlp16::LoadParams(request.config_folder);
+  const auto params = lidar::LoadParams(request.config_folder);
   auto run_info = runtime::MakeRunInfo("import", request.config_folder);
   run_info.file_name.emplace_back("lookout-import");
   run_info.file_text.push_back(FileNames(request.files) + map_text);

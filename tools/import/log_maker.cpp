@@ -3,16 +3,17 @@
 #include <utility>
 
 #include "common/bus/decode.hpp"
+#include "services/lidar/decoders.hpp"
+#include "services/lidar/wire.hpp"
 #include "services/navigator/wire.hpp"
-#include "services/vlp16/wire.hpp"
 
 namespace lookout::importer {
 
-LogMaker::LogMaker(const vlp16::Params& params, bool has_navigation, Write write)
+LogMaker::LogMaker(const lidar::Params& params, bool has_navigation, Write write)
     : write_(std::move(write)),
       data_port_(params.data_port),
       has_navigation_(has_navigation),
-      bundler_(params.data_port, params.position_port, params.decoder.cut_azimuth_rad) {}
+      bundler_(params.data_port, params.position_port, lidar::FormOf(params)) {}
 
 void LogMaker::Add(Utime time, ImportItem item) {
   num_waiting_bytes_ += item.bytes.size() + item.sentence.size() + sizeof(ImportItem);
@@ -66,8 +67,8 @@ void LogMaker::Release(Utime time, const ImportItem& item) {
   }
 }
 
-void LogMaker::WriteBundle(const vlp16::PacketBundle& bundle) {
-  write_(released_.value_or(bundle.time), bus::kLidarPackets, bus::Encode(vlp16::ToMessage(bundle)));
+void LogMaker::WriteBundle(const lidar::PacketBundle& bundle) {
+  write_(released_.value_or(bundle.time), bus::kLidarPackets, bus::Encode(lidar::ToMessage(bundle)));
 }
 
 void LogMaker::WriteNavigation(const std::vector<navigator::Item>& items) {

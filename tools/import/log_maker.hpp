@@ -12,9 +12,9 @@
 #include "common/bus/channels.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
+#include "services/lidar/core/driver/bundler.hpp"
+#include "services/lidar/params.hpp"
 #include "services/navigator/core/item_sequencer.hpp"
-#include "services/vlp16/core/bundler.hpp"
-#include "services/vlp16/params.hpp"
 
 namespace lookout::importer {
 
@@ -28,7 +28,7 @@ struct ImportItem {
   std::string source;                // of a sentence or sample: navigator::IsImportedSource
 };
 
-/// Puts items in order and makes messages of them: LIDAR_PACKETS in bundles as lookout-vlp16 makes them, NAV_RAW with ticks and marks as
+/// Puts items in order and makes messages of them: LIDAR_PACKETS in bundles as lookout-lidar makes them, NAV_RAW with ticks and marks as
 /// lookout-navigator does, LIDAR_SCAN as it is. Topics are recorded with delays of their own: an item waits until what is recorded is kWait later.
 class LogMaker {
  public:
@@ -40,7 +40,7 @@ class LogMaker {
   using Write = std::function<void(Utime time, const bus::Channel& channel, Bytes bytes)>;
 
   /// @param has_navigation  whether sentences or samples are to be expected: only then is there NAV_RAW, which has ticks as well
-  LogMaker(const vlp16::Params& params, bool has_navigation, Write write);
+  LogMaker(const lidar::Params& params, bool has_navigation, Write write);
 
   void Add(Utime time, ImportItem item);
 
@@ -56,13 +56,13 @@ class LogMaker {
  private:
   void Release(Utime time, const ImportItem& item);
   void ReleaseUntil(Utime until);
-  void WriteBundle(const vlp16::PacketBundle& bundle);
+  void WriteBundle(const lidar::PacketBundle& bundle);
   void WriteNavigation(const std::vector<navigator::Item>& items);
 
   Write write_;
   int data_port_;
   bool has_navigation_;
-  vlp16::Bundler bundler_;
+  lidar::Bundler bundler_;
   navigator::ItemSequencer sequencer_;
   std::multimap<Utime, ImportItem> waiting_;
   std::size_t num_waiting_bytes_ = 0;

@@ -14,11 +14,11 @@
 #include "common/core/sentence.hpp"
 #include "common/messages/checks.hpp"
 #include "common/messages/pose_message.hpp"
+#include "services/lidar/core/vlp16/data_packet.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
+#include "services/lidar/core/vlp16/position_packet.hpp"
+#include "services/lidar/wire.hpp"
 #include "services/navigator/wire.hpp"
-#include "services/vlp16/core/data_packet.hpp"
-#include "services/vlp16/core/packet_format.hpp"
-#include "services/vlp16/core/position_packet.hpp"
-#include "services/vlp16/wire.hpp"
 #include "tools/log/channel_types.hpp"
 #include "tools/log/other_type.hpp"
 
@@ -54,7 +54,7 @@ std::string_view FaultOf(const nav_raw_t& message) {
 }
 
 std::string_view FaultOf(const lidar_packets_t& message) {
-  const auto bundle = vlp16::ToBundle(message);
+  const auto bundle = lidar::ToBundle(message);
   if (!bundle) return kBadBundle;
   for (const auto& item : bundle->items) {
     const auto payload = bundle->PayloadOf(item);

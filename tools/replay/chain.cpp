@@ -5,7 +5,7 @@
 
 #include "common/config/text_config.hpp"
 #include "common/runtime/run_info.hpp"
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 
 namespace lookout::replay {
 

@@ -17,8 +17,8 @@
 #include "common/bus/log_file.hpp"
 #include "common/io/file_kind.hpp"
 #include "common/io/stop_signal.hpp"
+#include "services/lidar/io/capture_reader.hpp"
 #include "services/navigator/io/text_log_reader.hpp"
-#include "services/vlp16/io/capture_reader.hpp"
 #include "tools/replay/live_run.hpp"
 
 namespace lookout::replay {
@@ -117,7 +117,7 @@ class Feeder {
   }
 
   void FeedCapture(const fs::path& file) {
-    vlp16::CaptureReader reader(file);
+    lidar::CaptureReader reader(file);
     while (const auto datagram = reader.Next()) {
       CheckOrder(file, datagram->host_time);
       ++summary_.num_events;

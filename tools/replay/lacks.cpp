@@ -40,7 +40,7 @@ std::string NoScans(const Seen& seen) {
                                        : fmt::format("no scan came out of {} messages of LIDAR_PACKETS: {}", seen.num_lidar_packets, kSo);
   }
   if (seen.num_lidar_packets > 0) return fmt::format("no scan came out of {} lidar packets: {}", seen.num_lidar_packets, kSo);
-  return fmt::format("no lidar packet came to port {} (data_port of vlp16.txtpb): {}{}", seen.data_port, kSo,
+  return fmt::format("no lidar packet came to port {} (data_port of lidar.txtpb): {}{}", seen.data_port, kSo,
                      OtherPortsHint(seen.other_ports, &OtherPort::num_lidar_packets, "set data_port to"));
 }
 

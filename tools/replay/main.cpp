@@ -29,8 +29,8 @@
 #include "common/runtime/version.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/pose_t.hpp"
+#include "services/lidar/params.hpp"
 #include "services/navigator/params.hpp"
-#include "services/vlp16/params.hpp"
 #include "tools/log/log_output.hpp"
 #include "tools/log/other_type.hpp"
 #include "tools/log/pose_counts.hpp"
@@ -186,7 +186,7 @@ lookout::replay::Seen SeenIn(const Options& options, const lookout::replay::Insp
   seen.wants_scans = plan.Publishes(lookout::bus::kLidarScan);
   seen.wants_poses = plan.Publishes(lookout::bus::kPose);
   seen.wants_tracks = plan.Publishes(lookout::bus::kTracks);
-  seen.data_port = lookout::vlp16::LoadParams(options.config_folder).data_port;
+  seen.data_port = lookout::lidar::LoadParams(options.config_folder).data_port;
   for (const auto& [port, source] : lookout::navigator::LoadParams(options.config_folder).source_of_port) seen.sentence_ports.push_back(port);
   const auto* const lidar = chain.FindPublisher(lookout::bus::kLidarScan);
   seen.num_lidar_packets = inspection.is_logs || lidar == nullptr ? CountOf(chain, lookout::bus::kLidarPackets) : lidar->num_measured();

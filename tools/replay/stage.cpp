@@ -2,15 +2,15 @@
 
 #include "services/georeferencer/params.hpp"
 #include "services/georeferencer/service.hpp"
+#include "services/lidar/params.hpp"
+#include "services/lidar/service.hpp"
+#include "services/lidar/sources.hpp"
 #include "services/navigator/params.hpp"
 #include "services/navigator/service.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/segmenter/service.hpp"
 #include "services/tracker/params.hpp"
 #include "services/tracker/service.hpp"
-#include "services/vlp16/params.hpp"
-#include "services/vlp16/service.hpp"
-#include "services/vlp16/sources.hpp"
 
 namespace lookout::replay {
 
@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Vlp16Stage final : public Stage {
+class LidarStage final : public Stage {
  public:
-  Vlp16Stage(bus::Bus& bus, const fs::path& config_folder, const StageInput& input)
-      : params_(Load(config_folder, input.reads_raw ? vlp16::Input::kLog : vlp16::Input::kOutside)), service_(bus, params_) {}
+  LidarStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& input)
+      : params_(Load(config_folder, input.reads_raw ? lidar::Input::kLog : lidar::Input::kOutside)), service_(bus, params_) {}
 
   void AdvanceTo(Utime time) override { service_.AdvanceTo(time); }
   bool OnDatagram(const Datagram& datagram) override {
@@ -34,14 +34,14 @@ class Vlp16Stage final : public Stage {
   HealthReport Report() const override { return service_.Report(); }
 
  private:
-  static vlp16::Params Load(const fs::path& config_folder, vlp16::Input input) {
-    auto params = vlp16::LoadParams(config_folder);
+  static lidar::Params Load(const fs::path& config_folder, lidar::Input input) {
+    auto params = lidar::LoadParams(config_folder);
     params.input = input;
     return params;
   }
 
-  vlp16::Params params_;
-  vlp16::Service service_;
+  lidar::Params params_;
+  lidar::Service service_;
 };
 
 // A service that computes its output from messages alone, and holds nothing at its end.
@@ -138,7 +138,7 @@ std::unique_ptr<Stage> Make(bus::Bus& bus, const fs::path& config_folder, const 
 
 const std::vector<StageFactory>& StageFactories() {
   static const std::vector<StageFactory> kFactories{
-      {"vlp16", [](const fs::path& folder) { vlp16::LoadParams(folder); }, Make<Vlp16Stage>},
+      {"lidar", [](const fs::path& folder) { lidar::LoadParams(folder); }, Make<LidarStage>},
       {"segmenter", [](const fs::path& folder) { segmenter::LoadParams(folder); }, Make<PlainStage<segmenter::Service, segmenter::LoadParams>>},
       {"navigator", [](const fs::path& folder) { navigator::LoadParams(folder); }, Make<NavigatorStage>},
       {"georeferencer", [](const fs::path& folder) { georeferencer::LoadParams(folder); }, Make<GeoreferencerStage>},

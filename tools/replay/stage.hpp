@@ -11,7 +11,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
-#include "services/vlp16/core/sender_lock.hpp"
+#include "services/lidar/core/driver/sender_lock.hpp"
 #include "tools/replay/plan.hpp"
 
 namespace lookout::replay {
@@ -21,7 +21,7 @@ struct Datagram {
   Utime host_time;
   int port;  // destination
   Bytes payload;
-  vlp16::Sender sender = {};
+  lidar::Sender sender = {};
 };
 
 /// Messages reach a service over the bus that it was made with; the rest comes here. A service leaves out input that it has no use for.

@@ -23,10 +23,10 @@
 #include "config/schema/segmenter.pb.h"
 #include "lab/data/csv_file.hpp"
 #include "lab/data/xz_file.hpp"
+#include "services/lidar/core/vlp16/decoder.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
+#include "services/lidar/io/capture_reader.hpp"
 #include "services/segmenter/params.hpp"
-#include "services/vlp16/core/decoder.hpp"
-#include "services/vlp16/core/packet_format.hpp"
-#include "services/vlp16/io/capture_reader.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -226,7 +226,7 @@ Boat LoadBoatOfCaptures(const fs::path& folder, const fs::path& config_folder) {
   config::Segmenter message;
   config::LoadText(file, message);
   const auto facts = config::LoadBoat(folder);
-  return {config_folder, facts, vlp16::LoadParams(config_folder), segmenter::ToParams(message, facts, file)};
+  return {config_folder, facts, lidar::LoadParams(config_folder), segmenter::ToParams(message, facts, file)};
 }
 
 CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const ScanHandler& on_scan) {
@@ -237,21 +237,21 @@ CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const
 
   // The labels of a scan do not depend on its clock; the truth is of the sensor's.
   auto params = boat.lidar.decoder;
-  params.time = vlp16::TimeChoice::kSensor;
+  params.time = lidar::TimeChoice::kSensor;
   vlp16::Decoder decoder(
       params,
-      [&](const vlp16::Scan& scan) {
+      [&](const lidar::Scan& scan) {
         io::ThrowIfStopAsked();
         if (scan.is_partial_start || scan.is_partial_end) return;
-        labelled.scan = ToSegmenterScan(scan, boat.lidar.use_vertical_origin_offsets);
+        labelled.scan = ToSegmenterScan(scan);
         Join(files, truth, labelled, report);
         on_scan(labelled);
       },
-      [](const vlp16::SentenceOfLidar&) {});
+      [](const lidar::SentenceOfLidar&) {});
 
   const UnpackedCapture unpacked(files.capture);
   try {
-    vlp16::CaptureReader reader(unpacked.path());
+    lidar::CaptureReader reader(unpacked.path());
     while (const auto datagram = reader.Next()) {
       if (datagram->destination_port == boat.lidar.data_port) decoder.OnDataPayload(datagram->host_time, datagram->payload);
       if (datagram->destination_port == boat.lidar.position_port) decoder.OnPositionPayload(datagram->host_time, datagram->payload);

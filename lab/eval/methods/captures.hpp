@@ -68,7 +68,7 @@ class UnpackedCapture {
 /// Objects of a capture by id, called by their type and id. @throws std::runtime_error "file:line: reason"
 std::map<std::int32_t, ScanObject> ReadObjectsOfCapture(const CaptureWithTruth& files);
 
-/// Decodes a capture as lookout-vlp16 does and hands on each whole scan with its truth. Times are those of the sensor's clock.
+/// Decodes a capture as lookout-lidar does and hands on each whole scan with its truth. Times are those of the sensor's clock.
 ///
 /// Returns of the own vessel (object -1) are taken out of the scan; clutter (object 0) stays. Each row of the truth is met once; of several possible
 /// ones, the one of the same return index, then the nearest in time. The truth is read as it is needed, so it must be in the order of time.

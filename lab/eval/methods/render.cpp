@@ -10,10 +10,10 @@
 #include "common/bus/channels.hpp"
 #include "common/messages/checks.hpp"
 #include "lab/sim/lidar.hpp"
+#include "services/lidar/core/vlp16/decoder.hpp"
+#include "services/lidar/wire.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/segmenter/wire.hpp"
-#include "services/vlp16/core/decoder.hpp"
-#include "services/vlp16/wire.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -61,7 +61,7 @@ std::vector<std::int32_t> TakeObjects(const segmenter::Scan& scan, std::deque<Tr
 }  // namespace
 
 Boat LoadBoat(const std::filesystem::path& config_folder) {
-  return {config_folder, config::LoadBoat(config_folder), vlp16::LoadParams(config_folder), segmenter::LoadParams(config_folder)};
+  return {config_folder, config::LoadBoat(config_folder), lidar::LoadParams(config_folder), segmenter::LoadParams(config_folder)};
 }
 
 std::optional<segmenter::Scan> ScanOfMessages(const std::vector<lidar_scan_t>& parts) {
@@ -69,8 +69,8 @@ std::optional<segmenter::Scan> ScanOfMessages(const std::vector<lidar_scan_t>& p
   return segmenter::ToScan(parts);
 }
 
-segmenter::Scan ToSegmenterScan(const vlp16::Scan& scan, bool use_vertical_origin_offsets) {
-  auto received = ScanOfMessages(vlp16::ToScanMessages(scan, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes));
+segmenter::Scan ToSegmenterScan(const lidar::Scan& scan) {
+  auto received = ScanOfMessages(lidar::ToScanMessages(scan, 0, bus::kMaxMessageBytes));
   if (!received) throw std::logic_error("the segmenter refuses a scan of the decoder");
   return std::move(*received);
 }
@@ -82,15 +82,15 @@ void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, 
   std::deque<Truth> truths;
   vlp16::Decoder decoder(
       boat.lidar.decoder,
-      [&](const vlp16::Scan& scan) {
-        labelled.scan = ToSegmenterScan(scan, boat.lidar.use_vertical_origin_offsets);
+      [&](const lidar::Scan& scan) {
+        labelled.scan = ToSegmenterScan(scan);
         labelled.object = TakeObjects(labelled.scan, truths);
         if (!scan.is_partial_start && !scan.is_partial_end) on_scan(labelled);
       },
-      [](const vlp16::SentenceOfLidar&) {});
+      [](const lidar::SentenceOfLidar&) {});
 
   sim::LidarParams params;
-  params.use_vertical_origin_offsets = boat.lidar.use_vertical_origin_offsets;
+  params.use_vertical_origin_offsets = boat.lidar.decoder.use_vertical_origin_offsets;
   sim::Lidar lidar(scene, boat.facts, params, kStart, seed);
   const Utime end = kStart + std::chrono::microseconds(std::llround(seconds * 1e6));
   for (auto packet = lidar.Next(); packet.end_time <= end; packet = lidar.Next()) {

@@ -11,9 +11,9 @@
 #include "lab/eval/methods/method.hpp"
 #include "lab/sim/scene.hpp"
 #include "lookout/lidar_scan_t.hpp"
+#include "services/lidar/core/driver/scan.hpp"
+#include "services/lidar/params.hpp"
 #include "services/segmenter/core/segmenter.hpp"
-#include "services/vlp16/core/scan.hpp"
-#include "services/vlp16/params.hpp"
 
 namespace lookout::eval {
 
@@ -21,7 +21,7 @@ namespace lookout::eval {
 struct Boat {
   std::filesystem::path config_folder;
   config::BoatFacts facts;
-  vlp16::Params lidar;
+  lidar::Params lidar;
   segmenter::Params segmenter;
 };
 
@@ -32,11 +32,11 @@ Boat LoadBoat(const std::filesystem::path& config_folder);
 std::optional<segmenter::Scan> ScanOfMessages(const std::vector<lidar_scan_t>& parts);
 
 /// The scan as the segmenter receives it over messages, without a bus. @throws std::logic_error when it would refuse it
-segmenter::Scan ToSegmenterScan(const vlp16::Scan& scan, bool use_vertical_origin_offsets);
+segmenter::Scan ToSegmenterScan(const lidar::Scan& scan);
 
 using ScanHandler = std::function<void(const LabelledScan&)>;
 
-/// Lets the simulated lidar look at a scene, decodes its packets as lookout-vlp16 does, and hands on each whole scan, one at a time. The truth joins
+/// Lets the simulated lidar look at a scene, decodes its packets as lookout-lidar does, and hands on each whole scan, one at a time. The truth joins
 /// its cell exactly: no packet is lost on the way, so that the returns of the packets and those of the columns follow each other one by one.
 ///
 /// @param scene    outlives the call

@@ -23,7 +23,7 @@
 #include "lab/eval/methods/figures.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "lab/sim/simulation.hpp"
-#include "services/vlp16/io/capture_reader.hpp"
+#include "services/lidar/io/capture_reader.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout::eval {
@@ -226,7 +226,7 @@ void SimulateRun(const fs::path& config_folder, const fs::path& scene_file, std:
 
 void SendCapture(const CaptureWithTruth& files, const DatagramHandler& on_datagram) {
   const UnpackedCapture unpacked(files.capture);
-  vlp16::CaptureReader reader(unpacked.path());
+  lidar::CaptureReader reader(unpacked.path());
   while (const auto datagram = reader.Next()) {
     on_datagram({datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port}});
   }

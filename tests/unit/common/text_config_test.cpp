@@ -12,10 +12,10 @@
 #include "common/config/boat.hpp"
 #include "config/schema/boat.pb.h"
 #include "config/schema/georeferencer.pb.h"
+#include "config/schema/lidar.pb.h"
 #include "config/schema/recorder.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/tracker.pb.h"
-#include "config/schema/vlp16.pb.h"
 #include "tests/support/files.hpp"
 
 namespace lookout::config {
@@ -114,7 +114,7 @@ TEST(TextConfig, TellsEveryFaultOfATextAtOnceInTheOrderOfItsLines) {
 
 // The separator behind a refused statement goes with it: alone it is a fault of its own, and what stands behind it is not looked at.
 TEST(TextConfig, TellsEveryFaultOfATextWithSeparators) {
-  const std::string unknown = "Message type \"lookout.config.Vlp16\" has no field named ";
+  const std::string unknown = "Message type \"lookout.config.Lidar\" has no field named ";
   EXPECT_EQ(VlpFaults("source: UDP, bind_addres: \"0.0.0.0\", cut_azimuth_deg: 0, data_port: 70000\n"),
             "f.txtpb:1: bind_addres: " + unknown + "\"bind_addres\".\nf.txtpb:1: data_port: must be at most 65535 (is 70000)");
   EXPECT_EQ(VlpFaults("source: UDP;\nx: 1;\ny { z: 1 };\ncut_azimuth_deg: 0;\ncut_azimuth_deg: 1;\ndata_port: 70000;\n"),
@@ -202,7 +202,7 @@ TEST(FaultList, TellsTheFaultsOfTwoFilesEachOnce) {
   } catch (const ConfigError& error) {
     EXPECT_EQ(std::string(error.what()),
               "a:1: cut_azimuth_deg: must be set\n"
-              "a:2: bind_addres: Message type \"lookout.config.Vlp16\" has no field named \"bind_addres\".\n"
+              "a:2: bind_addres: Message type \"lookout.config.Lidar\" has no field named \"bind_addres\".\n"
               "b:4: data_port: must be at least 1 (is 0)\n"
               "c:1: data_port: must differ");
   }
@@ -239,7 +239,7 @@ std::string FaultOfFile(const fs::path& file) {
 // A FIFO held the process for ever, deaf to SIGTERM; /dev/zero filled the memory.
 TEST(TextConfig, OfWhatIsNoFileIsRefusedAtOnce) {
   const support::TempDir folder;
-  const auto fifo = folder / "vlp16.txtpb";
+  const auto fifo = folder / "lidar.txtpb";
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   EXPECT_EQ(FaultOfFile(fifo), fifo.string() + ":1: file: is no regular file (a FIFO, a socket or a device)");
   fs::create_symlink(fifo, folder / "link.txtpb");

@@ -216,10 +216,10 @@ TEST(DoctorLidar, SeesAPortThatIsTakenAndASensorThatIsNotWanted) {
   seen.lidar.fault = "cannot listen on '0.0.0.0' port 2368: bind: Address already in use";
   EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "running on another bus");
   seen = Healthy();
-  seen.config.lidar->sources.kind = vlp16::Sources::Kind::kCapture;
+  seen.config.lidar->sources.kind = lidar::Sources::Kind::kCapture;
   EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "no sensor is checked");
   seen.config.lidar.reset();
-  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "vlp16.txtpb is wrong");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "lidar.txtpb is wrong");
 }
 
 // On a busy computer the first HEALTH came later than the doctor waits for it, and it told of a taken port whose process sent on the same bus.
@@ -233,7 +233,7 @@ TEST(DoctorLidar, APortThatAProcessHoldsIsNoFaultThoughItsHealthCameLate) {
   EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "port 2368");
   EXPECT_SAYS(About(CheckNavigation(seen), "input"), kFault, "port 10110");
 
-  seen.processes["vlp16"].push_back(Running("vlp16", 8));
+  seen.processes["lidar"].push_back(Running("lidar", 8));
   ForgivePortsOfProcesses(seen);
   EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kOk, "VLP-16");
   EXPECT_EQ(seen.lidar.via, Via::kBus);

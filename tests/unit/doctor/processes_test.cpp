@@ -112,9 +112,9 @@ TEST(DoctorPlotter, NamesAnOutputThatDoesNotTakeOurData) {
 
 TEST(DoctorProcesses, SeesTwoOfAKindButNotARestart) {
   auto seen = Healthy();
-  seen.processes["vlp16"].push_back(Running("vlp16", 8));
+  seen.processes["lidar"].push_back(Running("lidar", 8));
   EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "vlp16 runs 2 times on one bus");
-  seen.processes["vlp16"].front().heard_last = kEnd - std::chrono::seconds(4);
+  seen.processes["lidar"].front().heard_last = kEnd - std::chrono::seconds(4);
   EXPECT_EQ(About(CheckProcesses(seen), "process").grade, kOk);
 }
 

@@ -36,7 +36,7 @@ TEST(DoctorConfig, NamesEachWrongFileOnce) {
   fs::copy(support::kDemoConfig, folder);
   fs::remove(folder / "segmenter.txtpb");
   std::ofstream(folder / "boat.txtpb") << "name: \"x\"\n";
-  std::ofstream(folder / "vlp16.txtpb") << "source: UDP\nbind_address: \"nowhere\"\ncut_azimuth_deg: 0\n";
+  std::ofstream(folder / "lidar.txtpb") << "source: UDP\nbind_address: \"nowhere\"\ncut_azimuth_deg: 0\n";
   std::ofstream(folder / "other.txtpb") << "x: 1\n";
   std::ofstream(folder / "georeferencer.txtpb") << "pose_timeout_s: 1000\n";
   const auto seen = ReadConfig(folder);
@@ -44,7 +44,7 @@ TEST(DoctorConfig, NamesEachWrongFileOnce) {
   for (const auto& [file, faults] : seen.files) first_fault[file] = faults.empty() ? "" : faults.front();
   EXPECT_EQ(first_fault.size(), 10U);
   EXPECT_NE(first_fault["boat.txtpb"].find("boat.txtpb:1: lidar"), std::string::npos) << first_fault["boat.txtpb"];
-  EXPECT_NE(first_fault["vlp16.txtpb"].find("vlp16.txtpb:2: bind_address: 'nowhere' is no numeric address"), std::string::npos);
+  EXPECT_NE(first_fault["lidar.txtpb"].find("lidar.txtpb:2: bind_address: 'nowhere' is no numeric address"), std::string::npos);
   EXPECT_NE(first_fault["segmenter.txtpb"].find("cannot be read"), std::string::npos);
   EXPECT_NE(first_fault["other.txtpb"].find("there is no config/schema/other.proto"), std::string::npos);
   // Both need boat.txtpb: one has no fault of its own, the other has.
@@ -103,7 +103,7 @@ TEST_F(DoctorNotes, KeepTheFixThatSaysMost) {
 
 TEST_F(DoctorNotes, TellProcessesApartByComputerAndId) {
   health_t health{};
-  health.process = "vlp16";
+  health.process = "lidar";
   health.host = "boat";
   health.pid = 1;
   Send(bus::kHealth, health);
@@ -112,10 +112,10 @@ TEST_F(DoctorNotes, TellProcessesApartByComputerAndId) {
   Send(bus::kHealth, health);
   health.host = "cabin";
   Send(bus::kHealth, health);
-  ASSERT_EQ(seen_.processes["vlp16"].size(), 2U);
-  EXPECT_EQ(seen_.processes["vlp16"][0].first.seq, 0);
-  EXPECT_EQ(seen_.processes["vlp16"][0].last.seq, 1);
-  EXPECT_EQ(seen_.processes["vlp16"][0].heard_last, now_);
+  ASSERT_EQ(seen_.processes["lidar"].size(), 2U);
+  EXPECT_EQ(seen_.processes["lidar"][0].first.seq, 0);
+  EXPECT_EQ(seen_.processes["lidar"][0].last.seq, 1);
+  EXPECT_EQ(seen_.processes["lidar"][0].heard_last, now_);
 }
 
 TEST_F(DoctorNotes, PassOverWhatCannotBeRead) {

@@ -48,7 +48,7 @@ class Captures : public ::testing::Test {
     boat_ = LoadBoat(kConfig);
     scene_ = sim::LoadScene(sim::FindScene(name, kConfig), kSeed);
     sim::LidarParams params;
-    params.use_vertical_origin_offsets = boat_.lidar.use_vertical_origin_offsets;
+    params.use_vertical_origin_offsets = boat_.lidar.decoder.use_vertical_origin_offsets;
     constexpr Utime kStart{std::chrono::microseconds(1'781'532'600'000'000)};
     sim::Lidar lidar(scene_, boat_.facts, params, kStart, kSeed);
     const auto capture = folder_ / "plain.pcap";

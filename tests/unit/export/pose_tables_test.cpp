@@ -110,7 +110,7 @@ TEST_F(TablesTest, CourseIsFromNorthAtTheBoatNotAtTheDatum) {
 TEST_F(TablesTest, HealthQuotesReasonsAndSplitsIntoTrafficAndCounters) {
   health_t health{};
   health.utime_us = kStartUs;
-  health.process = "vlp16";
+  health.process = "lidar";
   health.host = "boat";
   health.pid = 12;
   health.state = health_t::STATE_DEGRADED;

@@ -163,7 +163,7 @@ TEST(TopicMap, OfFaultsTellsEachWithItsLine) {
 class Import : public ::testing::Test {
  protected:
   void Run(const std::vector<Made>& messages, const TopicMap& map) {
-    vlp16::Params params;
+    lidar::Params params;
     LogMaker log(params, true, [this](Utime time, const bus::Channel& channel, Bytes bytes) {
       num_set_back_ += time < last_ ? 1 : 0;
       last_ = time;

@@ -66,7 +66,7 @@ TEST(Slots, APartThatComesLaterGoesOnWithItsGroup) {
 TEST(Slots, ThoseOfOneChannelDoNotReplaceEachOther) {
   Slots slots;
   slots.Put(1, "tracker", 100, 0, Frame(1));
-  slots.Put(1, "vlp16", 200, 0, Frame(2));
+  slots.Put(1, "lidar", 200, 0, Frame(2));
   slots.Put(1, "tracker", 300, 0, Frame(3));
   EXPECT_EQ(All(slots), (std::vector<int>{3, 2}));
 }

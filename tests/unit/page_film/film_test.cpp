@@ -150,7 +150,7 @@ TEST_F(OfFilm, GivesTheLastHealthOfEachProcessThatIsNotOld) {
     SceneLog log(a_);
     log->Health(kBeginUs, "gone");
     for (int second = 1; second < 8; ++second) {
-      log->Health(kBeginUs + second * 1'000'000, "vlp16");
+      log->Health(kBeginUs + second * 1'000'000, "lidar");
       log->Health(kBeginUs + second * 1'000'000 + 10, "tracker");
     }
   }
@@ -270,7 +270,7 @@ TEST_F(OfFilm, DrawsTheStripFromSeconds) {
     for (int seq = 0; seq < 100; ++seq) {
       if (seq >= 50 && seq < 60) continue;
       log->Scan(seq, seq < 50 ? 2 : 5, seq >= 80 ? std::optional(alert_t::LEVEL_WARNING) : std::nullopt);
-      if (seq % 10 == 0) log->Health(UtimeOf(seq) + kDelayUs + 50'000, "vlp16", seq == 70 ? 1 : 0, "rain");
+      if (seq % 10 == 0) log->Health(UtimeOf(seq) + kDelayUs + 50'000, "lidar", seq == 70 ? 1 : 0, "rain");
     }
   }
   const auto film = Open({a_});

@@ -80,10 +80,10 @@ TEST_F(Indexer, TellsAnAlertOnceAndAgainWhenItGrowsGraver) {
 TEST_F(Indexer, TellsWhatChangesInHealth) {
   {
     SceneLog log(log_);
-    log->Health(kBeginUs, "vlp16");
-    log->Health(kBeginUs + 1'000'000, "vlp16", health_t::STATE_FAILED, "no packets\x1b[2J");
-    log->Health(kBeginUs + 2'000'000, "vlp16", health_t::STATE_FAILED, "no packets");
-    log->Health(kBeginUs + 3'000'000, "vlp16");
+    log->Health(kBeginUs, "lidar");
+    log->Health(kBeginUs + 1'000'000, "lidar", health_t::STATE_FAILED, "no packets\x1b[2J");
+    log->Health(kBeginUs + 2'000'000, "lidar", health_t::STATE_FAILED, "no packets");
+    log->Health(kBeginUs + 3'000'000, "lidar");
   }
   EXPECT_EQ(TextsOf(Whole(), FilmEventKind::kHealth), (std::vector<std::string>{"vlp16: failed: no packets?[2J", "vlp16: OK"}));
 }
@@ -140,7 +140,7 @@ TEST_F(Indexer, DoesNotBelieveATimeThatTheNextEventDenies) {
     SceneLog log(log_);
     log->Scan(0);
     log->shift_us = 3'000'000'000'000'000;
-    log->Health(kBeginUs, "vlp16");
+    log->Health(kBeginUs, "lidar");
     log->shift_us = 0;
     log->Scan(1);
   }

@@ -91,9 +91,9 @@ TEST_F(PageClients, SeeHealthOfEachProcess) {
   browser.Watch(R"("HEALTH")");
   ASSERT_TRUE(Until([&] { return server_->IsWatched(IndexOf("HEALTH")); }));
   Publish("HEALTH", 1, "tracker", 0, "tracker");
-  Publish("HEALTH", 1, "vlp16", 0, "vlp16");
+  Publish("HEALTH", 1, "lidar", 0, "lidar");
   EXPECT_EQ(MessageOf(browser.Next()), "tracker");
-  EXPECT_EQ(MessageOf(browser.Next()), "vlp16");
+  EXPECT_EQ(MessageOf(browser.Next()), "lidar");
 }
 
 // A tab that stands still, or a browser that was stopped.

@@ -71,7 +71,7 @@ TEST(Lacks, NamesThePortsThatThePacketsCameTo) {
   auto seen = Whole();
   seen.num_lidar_packets = seen.num_scans = seen.num_obstacles_placed = 0;
   EXPECT_EQ(Said(seen),
-            "no lidar packet came to port 2368 (data_port of vlp16.txtpb): no scans, segments, obstacles, tracks and alerts are computed\n");
+            "no lidar packet came to port 2368 (data_port of lidar.txtpb): no scans, segments, obstacles, tracks and alerts are computed\n");
   seen.other_ports[2369] = {.num_datagrams = 1808, .num_lidar_packets = 1808, .num_sentences = 0};
   seen.other_ports[53] = {.num_datagrams = 1};
   EXPECT_NE(Said(seen).find("; datagrams came to other ports: 2369 (1808 datagrams, as a lidar sends them), 53 (1 datagram); set data_port to 2369"),

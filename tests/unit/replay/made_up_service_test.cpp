@@ -53,19 +53,19 @@ std::string PlanWithFuser(const Request& request) { return InWords(MakeLogPlan(r
 
 TEST(MadeUpService, IsPlannedByItsRow) {
   EXPECT_EQ(PlanWithFuser({}),
-            "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, painter\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
+            "ran: lidar, segmenter, navigator, georeferencer, tracker, fuser, painter\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanWithFuser({.only = {"fuser"}}), "ran: fuser\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
-  EXPECT_EQ(PlanWithFuser({.from = {"POSE"}, .only = {"fuser", "segmenter", "vlp16"}}),
-            "ran: vlp16, segmenter, fuser\nread: LIDAR_PACKETS, POSE, OBSTACLES\n");
+  EXPECT_EQ(PlanWithFuser({.from = {"POSE"}, .only = {"fuser", "segmenter", "lidar"}}),
+            "ran: lidar, segmenter, fuser\nread: LIDAR_PACKETS, POSE, OBSTACLES\n");
   EXPECT_EQ(PlanWithFuser({.from = {"OBSTACLES"}}), "ran: tracker, fuser, painter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanWithFuser({.from = {"FUSED"}}), "ran: tracker, painter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK, ORDERS, FUSED\n");
   EXPECT_THROW(PlanWithFuser({.from = {"FUSED"}, .only = {"georeferencer"}}), RequestError);
-  EXPECT_EQ(InWords(MakeCapturePlan({}, WithFuser())), "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, painter\nread: datagrams\n");
+  EXPECT_EQ(InWords(MakeCapturePlan({}, WithFuser())), "ran: lidar, segmenter, navigator, georeferencer, tracker, fuser, painter\nread: datagrams\n");
   EXPECT_THROW(MakeCapturePlan({.only = {"fuser"}}, WithFuser()), RequestError);
 }
 
 TEST(MadeUpService, IsListed) {
-  EXPECT_EQ(ServiceNames(WithFuser()), (std::vector<std::string>{"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "fuser", "painter"}));
+  EXPECT_EQ(ServiceNames(WithFuser()), (std::vector<std::string>{"lidar", "segmenter", "navigator", "georeferencer", "tracker", "fuser", "painter"}));
   EXPECT_EQ(FromNames(), (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES"}));
   EXPECT_EQ(FromNames(WithFuser()),
             (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES", "FUSED"}));

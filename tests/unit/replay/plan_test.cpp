@@ -11,7 +11,7 @@ const ChannelSet kDay{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA"
 std::string PlanOf(const Request& request, const ChannelSet& present = kDay) { return InWords(MakeLogPlan(request, present)); }
 
 TEST(ReplayPlan, OfALogBeginsAtTheRawChannels) {
-  EXPECT_EQ(PlanOf({}), "ran: vlp16, segmenter, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(PlanOf({}), "ran: lidar, segmenter, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
   const auto plan = MakeLogPlan({}, kDay);
   EXPECT_TRUE(plan.Reads("LIDAR_PACKETS"));
   EXPECT_TRUE(plan.Reads("NAV_RAW"));
@@ -20,14 +20,14 @@ TEST(ReplayPlan, OfALogBeginsAtTheRawChannels) {
 
 TEST(ReplayPlan, WithoutNavRawTakesTheSentencesOfTheLidar) {
   const auto plan = MakeLogPlan({}, {"LIDAR_PACKETS"});
-  EXPECT_EQ(InWords(plan), "ran: vlp16, segmenter, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(InWords(plan), "ran: lidar, segmenter, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, ALERT_ACK, ORDERS\n");
   EXPECT_FALSE(plan.Reads("NAV_RAW"));
 }
 
 TEST(ReplayPlan, FromAChannelStopsWhatGivesItAndWhatIsBefore) {
   EXPECT_EQ(PlanOf({.from = {"LIDAR_SCAN"}}), "ran: segmenter, navigator, georeferencer, tracker\nread: LIDAR_SCAN, NAV_RAW, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanOf({.from = {"SEGMENTS"}}), "ran: navigator, georeferencer, tracker\nread: LIDAR_SCAN, SEGMENTS, NAV_RAW, ALERT_ACK, ORDERS\n");
-  EXPECT_EQ(PlanOf({.from = {"POSE"}}), "ran: vlp16, segmenter, georeferencer, tracker\nread: LIDAR_PACKETS, POSE, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(PlanOf({.from = {"POSE"}}), "ran: lidar, segmenter, georeferencer, tracker\nread: LIDAR_PACKETS, POSE, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanOf({.from = {"SEGMENTS", "POSE"}}), "ran: georeferencer, tracker\nread: LIDAR_SCAN, SEGMENTS, POSE, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanOf({.from = {"OBSTACLES"}}), "ran: tracker\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanOf({.from = {"LIDAR_PACKETS", "NAV_RAW"}}), PlanOf({}));
@@ -41,16 +41,16 @@ TEST(ReplayPlan, FromLidarNmeaLeavesNavRawAside) {
 
 TEST(ReplayPlan, OnlySomeServicesReadWhatTheOthersGave) {
   EXPECT_EQ(PlanOf({.only = {"segmenter"}}), "ran: segmenter\nread: LIDAR_SCAN\n");
-  EXPECT_EQ(PlanOf({.only = {"vlp16"}}), "ran: vlp16\nread: LIDAR_PACKETS\n");
+  EXPECT_EQ(PlanOf({.only = {"lidar"}}), "ran: lidar\nread: LIDAR_PACKETS\n");
   EXPECT_EQ(PlanOf({.only = {"navigator"}}), "ran: navigator\nread: NAV_RAW\n");
   EXPECT_EQ(PlanOf({.only = {"georeferencer"}}), "ran: georeferencer\nread: SEGMENTS, POSE\n");
   EXPECT_EQ(PlanOf({.only = {"georeferencer", "segmenter"}}), "ran: segmenter, georeferencer\nread: LIDAR_SCAN, POSE\n");
-  EXPECT_EQ(PlanOf({.only = {"vlp16", "georeferencer"}}), "ran: vlp16, georeferencer\nread: LIDAR_PACKETS, SEGMENTS, POSE\n");
+  EXPECT_EQ(PlanOf({.only = {"lidar", "georeferencer"}}), "ran: lidar, georeferencer\nread: LIDAR_PACKETS, SEGMENTS, POSE\n");
   EXPECT_EQ(PlanOf({.from = {"LIDAR_SCAN"}, .only = {"segmenter"}}), "ran: segmenter\nread: LIDAR_SCAN\n");
 }
 
 TEST(ReplayPlan, RefusesWhatContradictsItself) {
-  EXPECT_THROW(MakeLogPlan({.from = {"LIDAR_SCAN"}, .only = {"vlp16"}}, kDay), RequestError);
+  EXPECT_THROW(MakeLogPlan({.from = {"LIDAR_SCAN"}, .only = {"lidar"}}, kDay), RequestError);
   EXPECT_THROW(MakeLogPlan({.from = {"POSE"}, .only = {"segmenter"}}, kDay), RequestError);
   EXPECT_THROW(MakeLogPlan({.from = {"LIDAR_PACKETS", "LIDAR_SCAN"}}, kDay), RequestError);
   EXPECT_THROW(MakeLogPlan({.from = {"NAV_RAW", "LIDAR_NMEA"}}, kDay), RequestError);
@@ -85,7 +85,7 @@ TEST(ReplayPlan, NeedsNoMoreThanItsCandidates) {
 }
 
 TEST(ReplayPlan, OfACaptureHasNoMessagesToRead) {
-  EXPECT_EQ(InWords(MakeCapturePlan({})), "ran: vlp16, segmenter, navigator, georeferencer, tracker\nread: datagrams\n");
+  EXPECT_EQ(InWords(MakeCapturePlan({})), "ran: lidar, segmenter, navigator, georeferencer, tracker\nread: datagrams\n");
   EXPECT_EQ(InWords(MakeCapturePlan({.only = {"navigator"}})), "ran: navigator\nread: datagrams\n");
   EXPECT_THROW(MakeCapturePlan({.from = {"LIDAR_PACKETS"}}), RequestError);
   EXPECT_THROW(MakeCapturePlan({.only = {"segmenter"}}), RequestError);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <map>
 
+#include "services/lidar/core/vlp16/position_packet.hpp"
 #include "services/navigator/core/nmea.hpp"
-#include "services/vlp16/core/position_packet.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
 namespace lookout::sim {

@@ -52,9 +52,9 @@ TEST(Board, CountsLossByGapsAlsoInParts) {
 TEST(Board, CountsLossOfHealthPerProcess) {
   Board board(kStart);
   // Each counts for itself: 7 beside 100 is no gap.
-  Say(board, bus::kHealth, HealthOf("vlp16", 100), 0.1);
+  Say(board, bus::kHealth, HealthOf("lidar", 100), 0.1);
   Say(board, bus::kHealth, HealthOf("segmenter", 7), 0.2);
-  Say(board, bus::kHealth, HealthOf("vlp16", 101), 1.1);
+  Say(board, bus::kHealth, HealthOf("lidar", 101), 1.1);
   EXPECT_EQ(board.Channels(At(1.2))[0].num_lost, 0);
   Say(board, bus::kHealth, HealthOf("segmenter", 9), 1.2);
   EXPECT_EQ(board.Channels(At(1.2))[0].num_lost, 1);
@@ -72,14 +72,14 @@ TEST(Board, ShowsTwoProcessesOfOneNameByHostAndProcessId) {
   for (int second = 0; second < 4; ++second) {
     Say(board, bus::kHealth, HealthOfPid("navigator", 11, second), second + 0.1);
     Say(board, bus::kHealth, HealthOfPid("navigator", 22, second), second + 0.2);
-    Say(board, bus::kHealth, HealthOfPid("vlp16", 33, second), second + 0.3);
-    Say(board, bus::kHealth, HealthOfPid("vlp16", 33, second, "shore"), second + 0.4);
+    Say(board, bus::kHealth, HealthOfPid("lidar", 33, second), second + 0.3);
+    Say(board, bus::kHealth, HealthOfPid("lidar", 33, second, "shore"), second + 0.4);
   }
   const auto processes = board.Processes(At(4.0));
   ASSERT_EQ(processes.size(), 4U);
-  EXPECT_EQ(processes[0].reason, "one of 2 vlp16s on this bus: pid 33 on boat");
-  EXPECT_EQ(processes[1].name, "vlp16@shore");
-  EXPECT_EQ(processes[1].reason, "one of 2 vlp16s on this bus: pid 33 on shore");
+  EXPECT_EQ(processes[0].reason, "one of 2 lidars on this bus: pid 33 on boat");
+  EXPECT_EQ(processes[1].name, "lidar@shore");
+  EXPECT_EQ(processes[1].reason, "one of 2 lidars on this bus: pid 33 on shore");
   EXPECT_EQ(processes[2].reason, "one of 2 navigators on this bus: pid 11 on boat");
   EXPECT_EQ(processes[3].reason, "one of 2 navigators on this bus: pid 22 on boat");
   EXPECT_EQ(board.Channels(At(4.0))[0].num_lost, 0);  // each counts for itself
@@ -100,7 +100,7 @@ TEST(Board, KeepsTheOrderOfTheChannelTable) {
   Board board(kStart);
   board.Take("ZEBRA", {}, At(0.1));
   board.Take("APPLE", {}, At(0.1));
-  Say(board, bus::kHealth, HealthOf("vlp16", 0), 0.1);
+  Say(board, bus::kHealth, HealthOf("lidar", 0), 0.1);
   Say(board, bus::kPose, PoseAt(0, 0.0), 0.1);
   const auto channels = board.Channels(At(0.2));
   ASSERT_EQ(channels.size(), 4U);
@@ -115,7 +115,7 @@ TEST(Board, NeverDiesOfBytesAndCountsThem) {
   Board board(kStart);
   std::mt19937 random(1);
   auto turn = bus::Encode(TurnOf(1, {ObstacleAt(1, 5.0F, 0.0F)}));
-  auto health = bus::Encode(HealthOf("vlp16", 1));
+  auto health = bus::Encode(HealthOf("lidar", 1));
   for (int i = 0; i < 2000; ++i) {
     for (const auto& channel : bus::kChannels) {
       std::vector<std::uint8_t> bytes(random() % 64);
@@ -149,7 +149,7 @@ TEST(Board, WhatIsSilentMakesRoomForWhatSpeaks) {
   Board board(kStart);
   Say(board, bus::kHealth, HealthOf("recorder", 0), 0.1);
   for (int i = 0; i < 200; ++i) {
-    auto invented = HealthOf("vlp16", 0);
+    auto invented = HealthOf("lidar", 0);
     invented.host = "elsewhere" + std::to_string(i);
     Say(board, bus::kHealth, invented, 0.2);
   }
@@ -234,13 +234,13 @@ TEST(Board, WithoutAHeadingOfThatTimeTheTrueBearingIsNotKnown) {
 TEST(Board, KeepsTheProcessesOfTheSuiteAboveInventedNames) {
   Board board(kStart);
   for (int i = 0; i < 64; ++i) Say(board, bus::kHealth, HealthOf("a" + std::to_string(i), 0), 0.1);
-  for (const std::string process : {"recorder", "vlp16", "segmenter", "navigator", "georeferencer"}) {
+  for (const std::string process : {"recorder", "lidar", "segmenter", "navigator", "georeferencer"}) {
     Say(board, bus::kHealth, HealthOf(process, 0), 0.2);
   }
   for (int i = 0; i < 1000; ++i) Say(board, bus::kHealth, HealthOf("b" + std::to_string(i), 0), 0.3);
   const auto processes = board.Processes(At(0.4));
   ASSERT_GE(processes.size(), 5U);
-  EXPECT_EQ(processes[0].name, "vlp16");
+  EXPECT_EQ(processes[0].name, "lidar");
   EXPECT_EQ(processes[1].name, "segmenter");
   EXPECT_EQ(processes[2].name, "navigator");
   EXPECT_EQ(processes[3].name, "georeferencer");
@@ -285,7 +285,7 @@ TEST(Board, MarksTheAlertThatSoundsAndThoseThatAreSilenced) {
 
 TEST(Board, TellsTheGreatestLatencyOfDataOnly) {
   Board board(kStart);
-  auto health = HealthOf("vlp16", 0);
+  auto health = HealthOf("lidar", 0);
   const auto add = [&health](const std::string& name, bool is_input, std::int64_t latency_p99_us) {
     health_channel_t channel{};
     channel.channel = name;
@@ -304,15 +304,15 @@ TEST(Board, TellsTheGreatestLatencyOfDataOnly) {
 
 TEST(Board, AProcessThatFallsSilentStays) {
   Board board(kStart);
-  Say(board, bus::kHealth, HealthOf("vlp16", 0), 0.1);
-  auto other = HealthOf("vlp16", 0);
+  Say(board, bus::kHealth, HealthOf("lidar", 0), 0.1);
+  auto other = HealthOf("lidar", 0);
   other.host = "shore";
   Say(board, bus::kHealth, other, 5.0);
   const auto processes = board.Processes(At(5.0));
   ASSERT_EQ(processes.size(), 2U);
-  EXPECT_EQ(processes[0].name, "vlp16");
+  EXPECT_EQ(processes[0].name, "lidar");
   EXPECT_TRUE(processes[0].is_silent);
-  EXPECT_EQ(processes[1].name, "vlp16@shore");
+  EXPECT_EQ(processes[1].name, "lidar@shore");
   EXPECT_FALSE(processes[1].is_silent);
 }
 

@@ -41,7 +41,7 @@ Board BusyBoard() {
   obstacles[1].confidence = obstacle_t::CONFIDENCE_TENTATIVE;
   obstacles[2].kind = obstacle_t::KIND_LAND;
   Say(board, bus::kObstacles, TurnOf(1, obstacles), 1.9);
-  for (const std::string process : {"vlp16", "segmenter", "navigator", "georeferencer", "recorder"}) {
+  for (const std::string process : {"lidar", "segmenter", "navigator", "georeferencer", "recorder"}) {
     Say(board, bus::kHealth,
         HealthOf(process, 0, process == "navigator" ? 1 : 0,
                  process == "navigator" ? "no heading: neither HDT nor PASHR for 12 s, course is too slow to tell" : ""),
@@ -294,7 +294,7 @@ TEST(Screen, CountsTheHealthOfInventedNames) {
   Board board = BusyBoard();
   for (int i = 0; i < 64; ++i) Say(board, bus::kHealth, HealthOf("a" + std::to_string(i), 0), 1.95);
   const auto lines = Lines(DrawScreen(board, "title", At(2.0), {80, 40}));
-  for (const std::string process : {" vlp16", " segmenter", " navigator", " georeferencer", " recorder"}) EXPECT_TRUE(Has(lines, process));
+  for (const std::string process : {" lidar", " segmenter", " navigator", " georeferencer", " recorder"}) EXPECT_TRUE(Has(lines, process));
   EXPECT_TRUE(Has(lines, "and 56 HEALTH of others"));
 }
 

@@ -52,7 +52,7 @@ TEST(ZoneInWords, SaysWhatNobodyLooksInto) {
     std::filesystem::copy_file(support::kCatabotConfig / "boat.txtpb", folder / "boat.txtpb", std::filesystem::copy_options::overwrite_existing);
     std::ofstream(folder / "segmenter.txtpb") << segmenter << "\n";
     std::ofstream(folder / "tracker.txtpb") << tracker << "\n";
-    if (!vlp16.empty()) std::ofstream(folder / "vlp16.txtpb") << vlp16 << "\n";
+    if (!vlp16.empty()) std::ofstream(folder / "lidar.txtpb") << vlp16 << "\n";
     return ZoneRemarksAsComments(LoadParams(folder));
   };
   const std::string ahead = "guard_zone { range_m: 10 from_bearing_deg: 300 to_bearing_deg: 60 }";

@@ -132,7 +132,7 @@ inline void Fill(alerts_t& m) {
 }
 
 inline void Fill(health_t& m) {
-  m.process = "vlp16";
+  m.process = "lidar";
   m.host = "boat";
   m.reason = "no PPS";
   m.num_channels = 1;
@@ -146,7 +146,7 @@ inline void Fill(health_t& m) {
 inline void Fill(run_info_t& m) {
   m.program = "recorder";
   m.num_files = 2;
-  m.file_name = {"boat.txtpb", "vlp16.txtpb"};
+  m.file_name = {"boat.txtpb", "lidar.txtpb"};
   m.file_text = {"name: \"x\"", ""};
 }
 

@@ -31,9 +31,9 @@ test("a channel is what its publisher and its readers tell together", () => {
 
 test("a process that went silent stays on the roll, with its age", () => {
   const roll = new Roll();
-  roll.take([health("vlp16", [], 1), health("tracker", [], 1)], 0);
-  roll.take([health("vlp16", [], 1), health("tracker", [], 2)], 8000);
-  assert.deepEqual(roll.list(9000).map(({ health: { process }, age_s }) => [process, age_s]), [["tracker", 1], ["vlp16", 9]]);
+  roll.take([health("lidar", [], 1), health("tracker", [], 1)], 0);
+  roll.take([health("lidar", [], 1), health("tracker", [], 2)], 8000);
+  assert.deepEqual(roll.list(9000).map(({ health: { process }, age_s }) => [process, age_s]), [["tracker", 1], ["lidar", 9]]);
   assert.deepEqual(roll.list(700_000), []);
 });
 

@@ -8,7 +8,7 @@ export const en = {
   back: "The connection is back.",
   stale: (seconds: string) => `The picture is ${seconds} old`,
   gap: (seconds: string) => `No scan at this time: the picture is ${seconds} older`,
-  nothingYet: "Nothing came yet. Are lookout-vlp16 and the other processes running?",
+  nothingYet: "Nothing came yet. Are lookout-lidar and the other processes running?",
   reading: "Reading the log …",
   noScans: "This log holds no scan.",
   live: "LIVE",

@@ -1,0 +1,514 @@
+#include "services/lidar/core/models/hesai.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "common/core/angles.hpp"
+#include "services/lidar/core/models/hesai_tables.hpp"
+
+namespace lookout::lidar {
+
+namespace {
+
+using std::chrono::nanoseconds;
+
+constexpr std::size_t kMaxChannels = 128;
+constexpr int kCdegPerTurn = 36000;
+constexpr std::size_t kNone = 0;  // no such byte in this layout
+
+/// Where a packet of a model has what. Offsets of the head are from the packet's begin, those of the tail from the tail's.
+struct Layout {
+  std::string_view name;
+  std::array<std::uint16_t, 2> sizes;  // bytes of a packet, without and with what is optional
+  std::size_t num_channels;
+  std::size_t num_blocks;
+  std::size_t head_bytes;
+  std::size_t channels_at;  // kNone: blocks begin with a flag instead of a head
+  std::size_t blocks_at;
+  std::size_t unit_at;
+  std::size_t cell_bytes;
+  std::size_t tail_at;
+  std::size_t us_at;
+  std::size_t mode_at;
+  std::size_t date_at;
+  std::size_t sequence_at;  // beyond the end of a packet without it
+  std::size_t crc_at;       // of the body, from the packet's begin; kNone: it has none
+  int unit_mm;              // of the manual
+  bool is_counted_back;     // first_ns is of the last column of a packet, else of the first
+  std::int64_t first_ns;    // from the packet's stamp to the first shot of that column
+  std::int64_t period_ps;   // from column to column
+
+  std::size_t block_head_bytes() const { return channels_at == kNone ? 4 : 2; }
+  constexpr std::size_t block_bytes() const { return block_head_bytes() + num_channels * cell_bytes; }
+  bool HasSize(std::size_t size_bytes) const { return size_bytes == sizes[0] || size_bytes == sizes[1]; }
+};
+
+// By HesaiModel. Sources: layouts of tier4/nebula and HesaiLidar_SDK_2.0; times of the latter. In XT heads and in QT64 and QT128 the packets of the
+// sensor end with the number of the packet, in Pandar40P and Pandar64 by its setting; QT128 adds a signature of 32 bytes.
+constexpr std::array<Layout, kNumHesaiModels> kLayouts{{
+    {"Hesai XT16", {564, 568}, 16, 8, 12, 6, 7, 9, 4, 540, 19, 10, 13, 24, kNone, 4, true, 5632 + 368, 50'000'000},
+    {"Hesai XT32", {1076, 1080}, 32, 8, 12, 6, 7, 9, 4, 1052, 19, 10, 13, 24, kNone, 4, true, 5632 + 368, 50'000'000},
+    {"Hesai XT32M", {816, 820}, 32, 6, 12, 6, 7, 9, 4, 792, 19, 10, 13, 24, kNone, 5, true, 5632 + 368, 50'000'000},
+    {"Hesai QT64", {1068, 1072}, 64, 4, 12, 6, 7, 9, 4, 1044, 12, 16, 18, 24, kNone, 4, false, 25'710 + 12'310, 166'666'667},
+    {"Hesai QT128", {1095, 1127}, 128, 2, 12, 6, 7, 9, 4, 1061, 21, 12, 15, 26, 1040, 4, false, 9000, 111'110'000},
+    {"Hesai Pandar40P", {1262, 1266}, 40, 10, 0, kNone, kNone, kNone, 3, 1240, 10, 14, 16, 22, kNone, 4, true, -28'580 - 54'670, 55'560'000},
+    {"Hesai Pandar64", {1194, 1198}, 64, 6, 8, 2, 3, 5, 3, 1172, 10, 14, 16, 22, kNone, 4, true, -42'580 - 54'668, 55'560'000},
+}};
+
+constexpr const Layout& LayoutOf(HesaiModel model) { return kLayouts[static_cast<std::size_t>(model)]; }
+
+static_assert(std::ranges::all_of(kLayouts, [](const Layout& layout) {
+  const std::size_t body_end = layout.head_bytes + layout.num_blocks * layout.block_bytes();
+  return layout.crc_at == kNone ? layout.tail_at == body_end : layout.crc_at == body_end;
+}));
+
+std::int64_t FireNs(HesaiModel model, std::size_t channel) {
+  const auto number = static_cast<std::int64_t>(channel);
+  switch (model) {
+    case HesaiModel::kXt16:
+      return 3024 * number;
+    case HesaiModel::kXt32:
+      return 1512 * number;
+    case HesaiModel::kXt32m:
+      return 2888 * (number % 16);
+    case HesaiModel::kQt64:
+      return hesai::kQt64FireNs[channel];
+    case HesaiModel::kQt128:
+      return hesai::kQt128FireNs[channel];
+    case HesaiModel::kPandar40p:
+      return hesai::kPandar40pFireNs[channel];
+    case HesaiModel::kPandar64:
+      return hesai::kPandar64FireNs[channel];
+  }
+  return 0;
+}
+
+std::vector<HesaiAngle> EvenAngles(std::size_t num_channels, double top_deg, double step_deg) {
+  std::vector<HesaiAngle> angles(num_channels);
+  for (std::size_t channel = 0; channel < num_channels; ++channel) angles[channel].elevation_deg = top_deg - step_deg * static_cast<double>(channel);
+  return angles;
+}
+
+std::vector<HesaiAngle> Qt128Angles() {
+  std::vector<HesaiAngle> angles(hesai::kQt128LowerAngles.begin(), hesai::kQt128LowerAngles.end());
+  angles.reserve(kMaxChannels);
+  while (angles.size() < kMaxChannels) {
+    const auto& mirrored = angles[kMaxChannels - 1 - angles.size()];
+    angles.push_back({-mirrored.elevation_deg, -mirrored.azimuth_offset_deg});
+  }
+  return angles;
+}
+
+/// How the blocks of one azimuth become returns.
+enum class Order { kAsSent, kNearestFirst, kNearestAndFarthest };
+
+struct ReturnMode {
+  std::size_t num_blocks = 1;  // of one azimuth
+  Order order = Order::kAsSent;
+  std::array<ReturnKind, 2> kinds{};
+
+  std::size_t num_returns() const { return num_blocks == 1 ? 1 : 2; }
+};
+
+std::optional<ReturnMode> ReturnModeOf(std::uint8_t byte) {
+  using enum ReturnKind;
+  switch (byte) {
+    case 0x33:
+      return ReturnMode{1, Order::kAsSent, {kFirst}};
+    case 0x34:
+      return ReturnMode{1, Order::kAsSent, {kSecond}};
+    case 0x37:
+      return ReturnMode{1, Order::kAsSent, {kStrongest}};
+    case 0x38:
+      return ReturnMode{1, Order::kAsSent, {kLast}};
+    case 0x39:
+      return ReturnMode{2, Order::kNearestFirst, {kStrongest, kLast}};
+    case 0x3a:
+      return ReturnMode{2, Order::kNearestFirst, {kFirst, kSecond}};
+    case 0x3b:
+      return ReturnMode{2, Order::kNearestFirst, {kFirst, kLast}};
+    case 0x3c:
+      return ReturnMode{2, Order::kNearestFirst, {kFirst, kStrongest}};
+    case 0x3d:
+      return ReturnMode{3, Order::kNearestAndFarthest, {kFirst, kLast}};
+    case 0x3e:
+      return ReturnMode{2, Order::kAsSent, {kStrongest, kSecond}};
+    default:
+      return std::nullopt;
+  }
+}
+
+// A cell as one number whose order is that of the ranges. A cell without a return is the farthest.
+constexpr std::uint32_t NearKey(const std::uint8_t* cell) {
+  const std::uint32_t range = cell[0] | std::uint32_t{cell[1]} << 8;
+  return ((range - 1) & 0xFFFF) << 8 | cell[2];
+}
+constexpr std::uint16_t RangeOf(std::uint32_t key) { return static_cast<std::uint16_t>((key >> 8) + 1); }
+constexpr std::uint8_t ReflectivityOf(std::uint32_t key) { return RangeOf(key) != 0 ? static_cast<std::uint8_t>(key & 0xFF) : 0; }
+
+void CopyBlock(const std::uint8_t* block, std::size_t num_rings, const std::uint16_t* cell_offset, std::size_t num_returns, std::size_t first_return,
+               std::uint32_t* range, std::uint8_t* reflectivity) {
+  for (std::size_t ring = 0; ring < num_rings; ++ring) {
+    const std::uint32_t key = NearKey(block + cell_offset[ring]);
+    range[ring * num_returns + first_return] = RangeOf(key);
+    reflectivity[ring * num_returns + first_return] = ReflectivityOf(key);
+  }
+}
+
+void CopyPair(const std::uint8_t* one, const std::uint8_t* other, std::size_t num_rings, const std::uint16_t* cell_offset, std::uint32_t* range,
+              std::uint8_t* reflectivity) {
+  for (std::size_t ring = 0; ring < num_rings; ++ring) {
+    const std::uint32_t one_key = NearKey(one + cell_offset[ring]);
+    const std::uint32_t other_key = NearKey(other + cell_offset[ring]);
+    const std::uint32_t near = std::min(one_key, other_key);
+    const std::uint32_t far = std::max(one_key, other_key);
+    range[2 * ring] = RangeOf(near);
+    range[2 * ring + 1] = RangeOf(far);
+    reflectivity[2 * ring] = ReflectivityOf(near);
+    reflectivity[2 * ring + 1] = ReflectivityOf(far);
+  }
+}
+
+// The nearest and the farthest of three; a lone return is the nearest.
+void CopyThree(const std::uint8_t* first_block, std::size_t block_bytes, std::size_t num_rings, const std::uint16_t* cell_offset,
+               std::uint32_t* range, std::uint8_t* reflectivity) {
+  for (std::size_t ring = 0; ring < num_rings; ++ring) {
+    std::array<std::uint32_t, 3> keys{};
+    for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = NearKey(first_block + i * block_bytes + cell_offset[ring]);
+    std::ranges::sort(keys);
+    const std::uint32_t far = RangeOf(keys[2]) != 0 ? keys[2] : keys[1];
+    range[2 * ring] = RangeOf(keys[0]);
+    range[2 * ring + 1] = RangeOf(far);
+    reflectivity[2 * ring] = ReflectivityOf(keys[0]);
+    reflectivity[2 * ring + 1] = ReflectivityOf(far);
+  }
+}
+
+// CRC-32/MPEG-2: polynomial 0x04C11DB7, highest bit first, begins with ones, nothing is inverted. Four bytes at a time.
+constexpr std::array<std::array<std::uint32_t, 256>, 4> MakeCrcTables() {
+  std::array<std::array<std::uint32_t, 256>, 4> tables{};
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    std::uint32_t crc = byte << 24;
+    for (int bit = 0; bit < 8; ++bit) crc = crc << 1 ^ ((crc & 0x80000000U) != 0 ? 0x04C11DB7U : 0U);
+    tables[0][byte] = crc;
+  }
+  for (std::size_t table = 1; table < tables.size(); ++table) {
+    for (std::size_t byte = 0; byte < 256; ++byte) {
+      const std::uint32_t before = tables[table - 1][byte];
+      tables[table][byte] = before << 8 ^ tables[0][before >> 24];
+    }
+  }
+  return tables;
+}
+
+constexpr std::uint32_t Crc32Mpeg2(Bytes bytes) {
+  constexpr auto kTables = MakeCrcTables();
+  std::uint32_t crc = 0xFFFFFFFFU;
+  std::size_t i = 0;
+  for (; i + 4 <= bytes.size(); i += 4) {
+    crc ^= std::uint32_t{bytes[i]} << 24 | std::uint32_t{bytes[i + 1]} << 16 | std::uint32_t{bytes[i + 2]} << 8 | bytes[i + 3];
+    crc = kTables[3][crc >> 24] ^ kTables[2][crc >> 16 & 0xFF] ^ kTables[1][crc >> 8 & 0xFF] ^ kTables[0][crc & 0xFF];
+  }
+  for (; i < bytes.size(); ++i) crc = crc << 8 ^ kTables[0][crc >> 24 ^ bytes[i]];
+  return crc;
+}
+constexpr std::array<std::uint8_t, 9> kCrcCheckInput{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+static_assert(Crc32Mpeg2(kCrcCheckInput) == 0x0376E6E7U);
+
+/// Seconds since 1970 of the six bytes of a date. Bytes of year below 70 are of this century (Pandar40P, Pandar64), others count from 1900. XT and QT
+/// heads may send 0, 0 and seconds, highest byte first, instead (HesaiLidar_SDK_2.0, GetMicroLidarTimeU64).
+std::optional<std::chrono::sys_seconds> DateOf(Bytes date, bool may_be_seconds) {
+  using namespace std::chrono;
+  if (may_be_seconds && date[0] == 0) {
+    return sys_seconds(seconds(std::uint32_t{date[2]} << 24 | std::uint32_t{date[3]} << 16 | std::uint32_t{date[4]} << 8 | date[5]));
+  }
+  constexpr std::uint8_t kFirstYearOfLastCentury = 70;
+  const year_month_day day(year(date[0] + (date[0] < kFirstYearOfLastCentury ? 2000 : 1900)), month(date[1]), std::chrono::day(date[2]));
+  // 60: a leap second.
+  if (!day.ok() || date[3] > 23 || date[4] > 59 || date[5] > 60) return std::nullopt;
+  return sys_days(day) + hours(date[3]) + minutes(date[4]) + seconds(date[5]);
+}
+
+bool HasHeadOf(const Layout& layout, Bytes payload) {
+  if (layout.channels_at == kNone) {
+    for (std::size_t block = 0; block < layout.num_blocks; ++block) {
+      if (payload[block * layout.block_bytes()] != 0xFF || payload[block * layout.block_bytes() + 1] != 0xEE) return false;
+    }
+    return true;
+  }
+  return payload[0] == 0xEE && payload[1] == 0xFF && payload[layout.channels_at] == layout.num_channels &&
+         payload[layout.blocks_at] == layout.num_blocks;
+}
+
+std::string_view Trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\"";
+  const auto begin = text.find_first_not_of(kBlanks);
+  return begin == std::string_view::npos ? std::string_view{} : text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+std::vector<std::string_view> FieldsOf(std::string_view line) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const auto end = line.find_first_of(",;\t");
+    fields.push_back(Trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return fields;
+    line.remove_prefix(end + 1);
+  }
+}
+
+std::optional<double> NumberOf(std::string_view field) {
+  if (field.starts_with('+')) field.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
+  if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+/// Which field of a line is which.
+struct AngleColumns {
+  std::size_t channel = 0;
+  std::size_t elevation = 1;
+  std::size_t azimuth = 2;
+};
+
+bool IsOneOf(std::string_view title, std::initializer_list<std::string_view> words) {
+  std::string lower(title);
+  std::ranges::transform(lower, lower.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return std::ranges::any_of(words, [&](std::string_view word) { return lower.find(word) != std::string::npos; });
+}
+
+std::optional<AngleColumns> ColumnsOf(const std::vector<std::string_view>& titles) {
+  const std::size_t none = titles.size();
+  AngleColumns columns{none, none, none};
+  for (std::size_t i = 0; i < titles.size(); ++i) {
+    if (columns.elevation == none && IsOneOf(titles[i], {"elev", "vert", "pitch"})) {
+      columns.elevation = i;
+    } else if (columns.azimuth == none && IsOneOf(titles[i], {"azi", "hori", "yaw"})) {
+      columns.azimuth = i;
+    } else if (columns.channel == none && IsOneOf(titles[i], {"channel", "laser", "ring", "id"})) {
+      columns.channel = i;
+    }
+  }
+  if (columns.channel == none || columns.elevation == none || columns.azimuth == none) return std::nullopt;
+  return columns;
+}
+
+[[noreturn]] void ThrowAtLine(std::size_t line, const std::string& reason) {
+  throw std::runtime_error("line " + std::to_string(line) + ": " + reason);
+}
+
+}  // namespace
+
+std::string_view NameOf(HesaiModel model) { return LayoutOf(model).name; }
+
+std::optional<HesaiModel> HesaiModelOf(Bytes payload) {
+  for (int i = 0; i < kNumHesaiModels; ++i) {
+    const auto model = static_cast<HesaiModel>(i);
+    if (LayoutOf(model).HasSize(payload.size()) && HasHeadOf(LayoutOf(model), payload)) return model;
+  }
+  return std::nullopt;
+}
+
+std::vector<HesaiAngle> NominalHesaiAngles(HesaiModel model) {
+  switch (model) {
+    case HesaiModel::kXt16:
+      return EvenAngles(16, 15.0, 2.0);
+    case HesaiModel::kXt32:
+      return EvenAngles(32, 15.0, 1.0);
+    case HesaiModel::kXt32m:
+      return EvenAngles(32, 19.5, 1.3);
+    case HesaiModel::kQt64:
+      return {hesai::kQt64Angles.begin(), hesai::kQt64Angles.end()};
+    case HesaiModel::kQt128:
+      return Qt128Angles();
+    case HesaiModel::kPandar40p:
+      return {hesai::kPandar40pAngles.begin(), hesai::kPandar40pAngles.end()};
+    case HesaiModel::kPandar64:
+      return {hesai::kPandar64Angles.begin(), hesai::kPandar64Angles.end()};
+  }
+  return {};
+}
+
+std::vector<HesaiAngle> ParseHesaiAngles(std::string_view csv) {
+  constexpr std::size_t kMaxBytes = 65'536;
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (csv.size() > kMaxBytes) throw std::runtime_error("has more than " + std::to_string(kMaxBytes) + " bytes: no table of angles");
+  if (csv.starts_with(kByteOrderMark)) csv.remove_prefix(kByteOrderMark.size());
+  std::array<std::optional<HesaiAngle>, kMaxChannels> found;
+  std::size_t num_channels = 0;
+  AngleColumns columns;
+  bool is_first = true;
+  for (std::size_t line = 1; !csv.empty(); ++line) {
+    const auto end = csv.find('\n');
+    const auto text = Trimmed(csv.substr(0, end));
+    csv.remove_prefix(end == std::string_view::npos ? csv.size() : end + 1);
+    if (text.empty() || text.starts_with('#')) continue;
+    const auto fields = FieldsOf(text);
+    if (is_first && IsOneOf(fields[0], {"eeff"})) continue;  // a mark and version, in newer files of the maker
+    const bool is_title = is_first && !NumberOf(fields[0]);
+    is_first = false;
+    if (is_title) {
+      const auto titled = ColumnsOf(fields);
+      if (!titled) ThrowAtLine(line, "must have the titles Channel, Elevation and Azimuth");
+      columns = *titled;
+      continue;
+    }
+    if (fields.size() <= std::max({columns.channel, columns.elevation, columns.azimuth})) {
+      ThrowAtLine(line, "must have a channel, an elevation and an azimuth");
+    }
+    const auto channel = NumberOf(fields[columns.channel]);
+    const auto elevation_deg = NumberOf(fields[columns.elevation]);
+    const auto azimuth_deg = NumberOf(fields[columns.azimuth]);
+    if (!channel || !elevation_deg || !azimuth_deg) ThrowAtLine(line, "channel, elevation and azimuth must be numbers");
+    if (*channel < 1.0 || *channel > static_cast<double>(kMaxChannels) || *channel != std::floor(*channel)) {
+      ThrowAtLine(line, "channel must be 1 to " + std::to_string(kMaxChannels));
+    }
+    if (std::abs(*elevation_deg) > 90.0) ThrowAtLine(line, "elevation must be within -90 and 90 deg");
+    if (std::abs(*azimuth_deg) > 360.0) ThrowAtLine(line, "azimuth must be within -360 and 360 deg");
+    const auto index = static_cast<std::size_t>(*channel) - 1;
+    if (found[index]) ThrowAtLine(line, "channel " + std::to_string(index + 1) + " is there twice");
+    found[index] = HesaiAngle{*elevation_deg, *azimuth_deg >= 180.0   ? *azimuth_deg - 360.0
+                                              : *azimuth_deg < -180.0 ? *azimuth_deg + 360.0
+                                                                      : *azimuth_deg};
+    num_channels = std::max(num_channels, index + 1);
+  }
+  if (num_channels == 0) throw std::runtime_error("has no channels");
+  std::vector<HesaiAngle> angles;
+  angles.reserve(num_channels);
+  for (std::size_t i = 0; i < num_channels; ++i) {
+    if (!found[i]) throw std::runtime_error("channel " + std::to_string(i + 1) + " is missing");
+    angles.push_back(*found[i]);
+  }
+  const auto is_level = [&](const HesaiAngle& angle) { return angle.elevation_deg == angles[0].elevation_deg; };
+  if (num_channels > 1 && std::ranges::all_of(angles, is_level)) throw std::runtime_error("all channels have the same elevation");
+  return angles;
+}
+
+HesaiReader::HesaiReader(HesaiModel model, const std::vector<HesaiAngle>& angles) : model_(model) {
+  const auto& layout = LayoutOf(model);
+  if (angles.size() != layout.num_channels) {
+    throw std::runtime_error("the table of angles has " + std::to_string(angles.size()) + " channels; " + std::string(layout.name) + " has " +
+                             std::to_string(layout.num_channels));
+  }
+  std::vector<std::size_t> channel_of_ring(angles.size());
+  std::iota(channel_of_ring.begin(), channel_of_ring.end(), std::size_t{0});
+  std::ranges::stable_sort(channel_of_ring, {}, [&](std::size_t channel) { return angles[channel].elevation_deg; });
+  head_.model = layout.name;
+  head_.stamp = StampKind::kAbsolute;
+  head_.beams.reserve(angles.size());
+  for (std::size_t ring = 0; ring < channel_of_ring.size(); ++ring) {
+    const std::size_t channel = channel_of_ring[ring];
+    cell_offset_[ring] = static_cast<std::uint16_t>(layout.block_head_bytes() + channel * layout.cell_bytes);
+    Beam beam;
+    beam.elevation_rad = DegToRad(angles[channel].elevation_deg);
+    beam.azimuth_offset_rad = DegToRad(angles[channel].azimuth_offset_deg);
+    beam.time_offset = nanoseconds(FireNs(model, channel));
+    beam.channel = static_cast<int>(channel);
+    head_.beams.push_back(beam);
+  }
+  head_.range_unit_m = layout.unit_mm / 1000.0;
+  head_.returns = {ReturnKind::kStrongest};
+}
+
+bool HesaiReader::MayBe(std::size_t size_bytes) const { return LayoutOf(model_).HasSize(size_bytes); }
+
+PacketFault HesaiReader::Refuse(PacketFault fault, std::string reason) {
+  reason_ = std::string(NameOf(model_)) + ": " + std::move(reason);
+  return fault;
+}
+
+void HesaiReader::UpdateHead(std::uint8_t mode, int unit_mm) {
+  if (mode == mode_ && unit_mm == unit_mm_) return;
+  const auto returns = ReturnModeOf(mode).value();
+  mode_ = mode;
+  unit_mm_ = unit_mm;
+  head_.range_unit_m = unit_mm / 1000.0;
+  head_.returns.assign(returns.kinds.begin(), returns.kinds.begin() + static_cast<std::ptrdiff_t>(returns.num_returns()));
+  head_.is_hearing_three = returns.num_blocks == 3;
+  ++head_number_;
+}
+
+PacketFault HesaiReader::Read(Bytes payload, Packet& packet) {
+  const auto& layout = LayoutOf(model_);
+  if (!layout.HasSize(payload.size()) || !HasHeadOf(layout, payload)) {
+    const bool has_size = layout.HasSize(payload.size());
+    const auto other = HesaiModelOf(payload);
+    return Refuse(has_size ? PacketFault::kHead : PacketFault::kSize,
+                  other      ? "the packet is of a " + std::string(NameOf(*other))
+                  : has_size ? "the packet has the head of another sensor"
+                             : "a packet of " + std::to_string(payload.size()) + " bytes, not " + std::to_string(layout.sizes[1]));
+  }
+  const int unit_mm = layout.unit_at == kNone ? layout.unit_mm : payload[layout.unit_at];
+  constexpr int kMaxUnitMm = 8;
+  if (unit_mm < 1 || unit_mm > kMaxUnitMm) return Refuse(PacketFault::kHead, "a unit of range of " + std::to_string(unit_mm) + " mm");
+  const Bytes tail = payload.subspan(layout.tail_at);
+  const std::uint8_t mode_byte = tail[layout.mode_at];
+  const auto mode = ReturnModeOf(mode_byte);
+  if (!mode || layout.num_blocks % mode->num_blocks != 0)
+    return Refuse(PacketFault::kMode, "return mode " + std::to_string(mode_byte) + " is not known");
+
+  const std::size_t block_bytes = layout.block_bytes();
+  const std::size_t azimuth_at = layout.head_bytes + layout.block_head_bytes() - 2;
+  const std::size_t num_columns = layout.num_blocks / mode->num_blocks;
+  std::array<int, 16> azimuth_cdeg{};  // [blocks]
+  for (std::size_t block = 0; block < layout.num_blocks; ++block) {
+    azimuth_cdeg[block] = ReadU16LittleEndian(payload, azimuth_at + block * block_bytes);
+    if (azimuth_cdeg[block] >= kCdegPerTurn)
+      return Refuse(PacketFault::kAzimuth, "an azimuth of " + std::to_string(azimuth_cdeg[block]) + " / 100 deg");
+    if (azimuth_cdeg[block] != azimuth_cdeg[block - block % mode->num_blocks]) {
+      return Refuse(PacketFault::kAzimuth, "returns of one shot have two azimuths");
+    }
+  }
+  const auto date = DateOf(tail.subspan(layout.date_at, 6), layout.head_bytes == 12);
+  const std::uint32_t us = ReadU32LittleEndian(tail, layout.us_at);
+  constexpr std::uint32_t kMaxUs = 2'000'000;  // a leap second may be added to the last one
+  if (!date || us >= kMaxUs) return Refuse(PacketFault::kStamp, "a date or time of day that is none");
+  if (layout.crc_at != kNone) {
+    const Bytes body = payload.subspan(layout.head_bytes, layout.crc_at - layout.head_bytes);
+    const bool is_right = Crc32Mpeg2(body) == ReadU32LittleEndian(payload, layout.crc_at);
+    if (!is_right && has_right_crc_) return Refuse(PacketFault::kChecksum, "the checksum of the returns is wrong");
+    has_right_crc_ = has_right_crc_ || is_right;
+  }
+
+  UpdateHead(mode_byte, unit_mm);
+  packet.stamp = date->time_since_epoch() + std::chrono::microseconds(us);
+  packet.number.reset();
+  if (layout.sequence_at + 4 <= tail.size()) packet.number = PacketNumber{ReadU32LittleEndian(tail, layout.sequence_at), std::uint64_t{1} << 32};
+  const auto time_of = [&](std::size_t steps) { return nanoseconds(static_cast<std::int64_t>(steps) * layout.period_ps / 1000); };
+  packet.duration = time_of(num_columns);
+  const std::size_t num_rings = head_.beams.size();
+  const std::size_t num_returns = head_.returns.size();
+  packet.columns.resize(num_columns);
+  packet.range.resize(num_columns * num_rings * num_returns);
+  packet.reflectivity.resize(packet.range.size());
+  for (std::size_t column = 0; column < num_columns; ++column) {
+    const std::size_t first_block = column * mode->num_blocks;
+    constexpr double kRadPerCdeg = kTwoPi / kCdegPerTurn;
+    packet.columns[column].azimuth_rad = azimuth_cdeg[first_block] * kRadPerCdeg;
+    packet.columns[column].time = nanoseconds(layout.first_ns) + (layout.is_counted_back ? -time_of(num_columns - 1 - column) : time_of(column));
+    const std::uint8_t* block = payload.data() + layout.head_bytes + first_block * block_bytes;
+    std::uint32_t* range = packet.range.data() + column * num_rings * num_returns;
+    std::uint8_t* reflectivity = packet.reflectivity.data() + column * num_rings * num_returns;
+    switch (mode->order) {
+      case Order::kAsSent:
+        for (std::size_t i = 0; i < num_returns; ++i) {
+          CopyBlock(block + i * block_bytes, num_rings, cell_offset_.data(), num_returns, i, range, reflectivity);
+        }
+        break;
+      case Order::kNearestFirst:
+        CopyPair(block, block + block_bytes, num_rings, cell_offset_.data(), range, reflectivity);
+        break;
+      case Order::kNearestAndFarthest:
+        CopyThree(block, block_bytes, num_rings, cell_offset_.data(), range, reflectivity);
+        break;
+    }
+  }
+  return PacketFault::kNone;
+}
+
+}  // namespace lookout::lidar

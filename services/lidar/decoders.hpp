@@ -1,0 +1,17 @@
+// What depends on the model: the decoder of its packets, the judge of its senders, what its packets look like from outside.
+#pragma once
+
+#include <memory>
+
+#include "services/lidar/core/driver/bundler.hpp"
+#include "services/lidar/core/driver/decoder.hpp"
+#include "services/lidar/core/driver/packet_judge.hpp"
+#include "services/lidar/params.hpp"
+
+namespace lookout::lidar {
+
+std::unique_ptr<Decoder> MakeDecoder(const Params& params, ScanHandler on_scan, SentenceHandler on_sentence);
+JudgeMaker JudgeOf(const Params& params);
+Bundler::Form FormOf(const Params& params);
+
+}  // namespace lookout::lidar

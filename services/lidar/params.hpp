@@ -1,0 +1,56 @@
+// Config of the lidar process (lidar.txtpb) as checked values.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/lidar/core/models/table.hpp"
+#include "services/lidar/core/vlp16/decoder.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
+
+namespace lookout::lidar {
+
+enum class Input { kOutside, kLog };  // kLog: subscribes LIDAR_PACKETS and publishes no raw
+
+/// Where datagrams come from: for main. The service does not look at it.
+struct Sources {
+  enum class Kind { kUdp, kCapture, kLog, kInterface };  // in the order of the schema
+  Kind kind = Kind::kUdp;
+  std::vector<std::filesystem::path> capture_files;  // in the order in which they are read
+  double capture_speed = 1.0;                        // 0 = as fast as possible
+  std::string bind_address;
+  std::string interface;        // empty = any
+  std::string multicast_group;  // empty = none
+  std::vector<std::string>
+      allowed_source_addresses;  // empty = all; as inet_ntop writes them, to be compared as texts; a text that is no address stays
+  std::string bpf_filter;        // empty = made of the ports
+  int receive_buffer_bytes = 0;
+};
+
+/// A lidar that is not of the VLP-16 family.
+struct OtherLidar {
+  OtherModel model = OtherModel::kOuster;
+  std::string beam_text;  // content of beam_file; empty = none
+};
+
+struct Params {
+  Input input = Input::kOutside;
+  int data_port = vlp16::format::kDataPort;
+  int position_port = vlp16::format::kPositionPort;
+  vlp16::DecoderParams decoder;     // of other models its time and cut alone
+  std::optional<OtherLidar> other;  // nullopt: of the VLP-16 family
+  Sources sources;
+};
+
+/// @param config_folder  the boat's folder, holding lidar.txtpb
+/// @throws config::ConfigError with every fault. Addresses, captures and the filter are texts here: LoadChecked checks them for who opens sources
+Params LoadParams(const std::filesystem::path& config_folder);
+
+/// The same, but fields that do not go together are added to `faults`, each as a line: for a caller that has more to check and tells all at once.
+///
+/// @throws config::ConfigError when the file is not of the schema
+Params LoadParams(const std::filesystem::path& config_folder, std::vector<std::string>& faults);
+
+}  // namespace lookout::lidar
