@@ -108,7 +108,12 @@ std::optional<Datagram> CaptureReader::Next(std::int64_t max_frames) {
       if (!damage_.empty()) damage_ += ", after " + std::to_string(num_frames()) + " frames";
       return std::nullopt;
     }
-    const auto frame = ParseFrame(captured->link_type, captured->bytes, captured->is_cut);
+    auto frame = ParseFrame(captured->link_type, captured->bytes, captured->is_cut);
+    std::optional<std::vector<std::uint8_t>> joined;
+    if (frame.fragment) {
+      joined = fragments_.Add(*frame.fragment);
+      if (joined) frame = ParseDatagram(*joined, frame.fragment->source_address);
+    }
     if (!frames_.Add(frame, captured->time)) continue;
     return Datagram{*captured->time, frame.source_address, frame.source_port, frame.destination_port, {frame.payload.begin(), frame.payload.end()}};
   }
@@ -123,6 +128,7 @@ std::int64_t CaptureReader::position_bytes() const {
 std::vector<Counter> CaptureReader::counters() const {
   std::vector<Counter> counters;
   frames_.AppendTo(counters);
+  counters.push_back({"datagrams_given_up", fragments_.num_given_up()});
   counters.push_back({"capture_damaged", num_damaged()});
   return counters;
 }

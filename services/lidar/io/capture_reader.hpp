@@ -62,6 +62,7 @@ class CaptureReader {
   int link_type_ = 0;
   bool is_at_end_ = false;
   FrameCounts frames_;
+  FragmentJoiner fragments_;
   std::string damage_;
 };
 

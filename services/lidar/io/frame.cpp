@@ -50,24 +50,65 @@ Frame ParseUdp(Bytes bytes, std::size_t ip_size, bool is_cut, std::string source
           bytes.subspan(kUdpHeaderSizeBytes, size - kUdpHeaderSizeBytes)};
 }
 
+// `bytes`: captured behind the header of IP, or of the fragment; `size`: of the part, by that header.
+Frame FragmentOf(Bytes bytes, std::size_t size, bool is_cut, Fragment fragment) {
+  if (size > bytes.size()) return Refused(Short(is_cut));
+  fragment.bytes = bytes.first(size);
+  Frame frame = Refused(FrameFault::kFragment);
+  frame.fragment = std::move(fragment);
+  return frame;
+}
+
+constexpr std::size_t kFragmentUnitBytes = 8;
+
 Frame ParseIpv4(Bytes bytes, bool is_cut) {
   constexpr std::size_t kMinHeaderSizeBytes = 20;
   if (bytes.size() < kMinHeaderSizeBytes) return Refused(Short(is_cut));
   const std::size_t header_size = 4U * (bytes[0] & 0x0FU);  // with options
   const auto total_size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 2));
   if (bytes[0] >> 4 != 4 || header_size < kMinHeaderSizeBytes) return Refused(FrameFault::kBadIpHeader);
-  constexpr int kMoreFragmentsAndOffset = 0x3FFF;
-  if ((ReadU16BigEndian(bytes, 6) & kMoreFragmentsAndOffset) != 0) return Refused(FrameFault::kFragment);
+  constexpr int kMoreFragments = 0x2000;
+  constexpr int kFragmentOffset = 0x1FFF;
+  const int fragment = ReadU16BigEndian(bytes, 6) & (kMoreFragments | kFragmentOffset);
+  if (fragment != 0) {
+    if (bytes[9] != kProtocolUdp || header_size > bytes.size()) return Refused(FrameFault::kFragment);
+    return FragmentOf(bytes.subspan(header_size), total_size - std::min(total_size, header_size), is_cut,
+                      {.source_address = AddressText(AF_INET, bytes.subspan(12, 4)),
+                       .destination_address = AddressText(AF_INET, bytes.subspan(16, 4)),
+                       .identification = static_cast<std::uint32_t>(ReadU16BigEndian(bytes, 4)),
+                       .offset_bytes = static_cast<std::size_t>(fragment & kFragmentOffset) * kFragmentUnitBytes,
+                       .is_last = (fragment & kMoreFragments) == 0,
+                       .bytes = {}});
+  }
   if (bytes[9] != kProtocolUdp) return Refused(FrameFault::kNotUdp);
   if (header_size > bytes.size()) return Refused(Short(is_cut));
   return ParseUdp(bytes.subspan(header_size), total_size - std::min(total_size, header_size), is_cut, AddressText(AF_INET, bytes.subspan(12, 4)));
+}
+
+// Behind the header of IPv6: next header, a spare byte, offset and flag, identification.
+Frame ParseIpv6Fragment(Bytes bytes, bool is_cut) {
+  constexpr std::size_t kFragmentHeaderBytes = 8;
+  constexpr int kMoreFragments = 1;
+  const auto size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 4));
+  if (bytes.size() < kIpv6HeaderSizeBytes + kFragmentHeaderBytes) return Refused(Short(is_cut));
+  const auto header = bytes.subspan(kIpv6HeaderSizeBytes, kFragmentHeaderBytes);
+  if (header[0] != kProtocolUdp) return Refused(FrameFault::kFragment);
+  const int place = ReadU16BigEndian(header, 2);
+  return FragmentOf(
+      bytes.subspan(kIpv6HeaderSizeBytes + kFragmentHeaderBytes), size - std::min(size, kFragmentHeaderBytes), is_cut,
+      {.source_address = AddressText(AF_INET6, bytes.subspan(8, 16)),
+       .destination_address = AddressText(AF_INET6, bytes.subspan(24, 16)),
+       .identification = static_cast<std::uint32_t>(ReadU16BigEndian(header, 4)) << 16U | static_cast<std::uint32_t>(ReadU16BigEndian(header, 6)),
+       .offset_bytes = static_cast<std::size_t>(place) / kFragmentUnitBytes * kFragmentUnitBytes,
+       .is_last = (place & kMoreFragments) == 0,
+       .bytes = {}});
 }
 
 Frame ParseIpv6(Bytes bytes, bool is_cut) {
   if (bytes.size() < kIpv6HeaderSizeBytes) return Refused(Short(is_cut));
   if (bytes[0] >> 4 != 6) return Refused(FrameFault::kBadIpHeader);
   const int protocol = bytes[6];
-  if (protocol == kProtocolIpv6Fragment) return Refused(FrameFault::kFragment);
+  if (protocol == kProtocolIpv6Fragment) return ParseIpv6Fragment(bytes, is_cut);
   if (std::ranges::find(kProtocolsIpv6Extension, protocol) != kProtocolsIpv6Extension.end()) return Refused(FrameFault::kIpv6Extension);
   if (protocol != kProtocolUdp) return Refused(FrameFault::kNotUdp);
   const auto payload_size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 4));
@@ -134,6 +175,8 @@ Frame ParseFrame(int link_type, Bytes bytes, bool is_cut) {
       return ParseIp(bytes, is_cut);
   }
 }
+
+Frame ParseDatagram(Bytes bytes, std::string source_address) { return ParseUdp(bytes, bytes.size(), false, std::move(source_address)); }
 
 std::optional<Utime> UtimeOfStamp(std::int64_t seconds, std::int64_t nanoseconds) {
   constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;

@@ -12,6 +12,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
+#include "services/lidar/io/fragments.hpp"
 
 struct pcap;  // libpcap's pcap_t
 
@@ -22,7 +23,7 @@ enum class FrameFault {
   kTruncated,  // the capture kept fewer bytes than were on the wire, and the datagram needs them
   kNotIp,
   kNotUdp,
-  kFragment,       // of an IP datagram: not put together again
+  kFragment,       // of an IP datagram: the rest of it is needed
   kIpv6Extension,  // IPv6 with extension headers
   kBadIpHeader,    // version or header length that cannot be
   kBadLength,      // a length that goes beyond the bytes that hold it
@@ -37,7 +38,8 @@ struct Frame {
   std::string source_address = {};       // numeric
   int source_port = 0;
   int destination_port = 0;
-  Bytes payload = {};  // within the bytes of the frame
+  Bytes payload = {};                     // within the bytes of the frame
+  std::optional<Fragment> fragment = {};  // with kFragment alone, where its bytes are whole
 };
 
 /// Handle of libpcap, for capturing or reading; closes itself.
@@ -52,8 +54,11 @@ bool IsLinkTypeUnderstood(int link_type);
 ///
 /// The length that UDP says counts, where the captured bytes hold it: position packets of a real VLP-16 carry the IP length of a data packet.
 /// Checksums are not looked at: with checksum offload a capture holds wrong ones for good datagrams.
-/// Fragments are not put together: a data packet of the lidar fits into one frame.
+/// A fragment is handed on: FragmentJoiner puts it together with the others, and ParseDatagram reads the datagram.
 Frame ParseFrame(int link_type, Bytes bytes, bool is_cut);
+
+/// Of a UDP datagram with its header, as FragmentJoiner gives it. The payload of the frame is within `bytes`.
+Frame ParseDatagram(Bytes bytes, std::string source_address);
 
 /// Time of a frame, as libpcap reports it when nanoseconds were asked for.
 ///

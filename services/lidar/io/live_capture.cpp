@@ -42,7 +42,9 @@ std::string ReasonOf(pcap_t* capture, int status) {
 }  // namespace
 
 std::string FilterOfPorts(int data_port, int position_port, bool has_vlan) {
-  const std::string ports = "(udp and (dst port " + std::to_string(data_port) + " or dst port " + std::to_string(position_port) + "))";
+  // Parts of a datagram behind the first have no ports.
+  const std::string ports = "((udp and (dst port " + std::to_string(data_port) + " or dst port " + std::to_string(position_port) +
+                            ")) or (ip proto 17 and ip[6:2] & 0x1fff != 0))";
   // "vlan" shifts the offsets of everything to its right, so untagged frames stand first and the tags nest.
   return has_vlan ? ports + " or (vlan and (" + ports + " or (vlan and " + ports + ")))" : ports;
 }
@@ -136,6 +138,12 @@ std::string LiveCapture::Poll(Utime now) {
 
 std::optional<io::Source::Piece> LiveCapture::Check(Bytes bytes, bool is_cut, std::int64_t seconds, std::int64_t fraction) {
   auto frame = ParseFrame(link_type_, bytes, is_cut);
+  if (frame.fragment) {
+    if (auto joined = fragments_.Add(*frame.fragment)) {
+      joined_ = std::move(*joined);
+      frame = ParseDatagram(joined_, frame.fragment->source_address);
+    }
+  }
   const auto host_time = UtimeOfStamp(seconds, fraction * nanoseconds_per_fraction_);
   if (host_time) last_time_ = *host_time;
   if (!frames_.Add(frame, host_time)) return std::nullopt;
@@ -180,6 +188,7 @@ std::vector<Counter> LiveCapture::counters() {
                                 {"capture_outages", num_outages_},
                                 {"capture_read_errors", num_read_errors_}};
   frames_.AppendTo(counters);
+  counters.push_back({"datagrams_given_up", fragments_.num_given_up()});
   return counters;
 }
 

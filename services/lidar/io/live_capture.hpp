@@ -83,6 +83,8 @@ class LiveCapture final : public io::Source {
   std::string filter_;
   Drops past_drops_;  // of closed captures
   FrameCounts frames_;
+  FragmentJoiner fragments_;
+  std::vector<std::uint8_t> joined_;  // the last datagram that was put together
   std::int64_t num_source_refused_ = 0;
   std::int64_t num_outages_ = 0;
   std::int64_t num_opened_ = 0;

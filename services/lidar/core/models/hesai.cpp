@@ -43,7 +43,7 @@ struct Layout {
   std::int64_t first_ns;    // from the packet's stamp to the first shot of that column
   std::int64_t period_ps;   // from column to column
 
-  std::size_t block_head_bytes() const { return channels_at == kNone ? 4 : 2; }
+  constexpr std::size_t block_head_bytes() const { return channels_at == kNone ? 4 : 2; }
   constexpr std::size_t block_bytes() const { return block_head_bytes() + num_channels * cell_bytes; }
   bool HasSize(std::size_t size_bytes) const { return size_bytes == sizes[0] || size_bytes == sizes[1]; }
 };

@@ -11,6 +11,7 @@
 
 namespace lookout::vlp16 {
 
+using lidar::ClockReading;
 using lidar::PacketCounts;
 using lidar::Scan;
 
