@@ -15,7 +15,9 @@
 #include "tests/fuzz/corpus.hpp"
 #include "tests/fuzz/packet_script.hpp"
 #include "tests/unit/data/cloud_text.hpp"
+#include "tests/unit/lidar/hesai_packet.hpp"
 #include "tests/unit/lidar/packet_maker.hpp"
+#include "tests/unit/lidar/velodyne_packet.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
@@ -154,6 +156,43 @@ void WritePositionPackets(const Folder& folder, const Folder& scripts) {
     script::Writer writer(0, 0, 0);
     writer.Add(script::Kind::kPosition, 0, packet).Add(script::Kind::kData, 0, MakeDataPacket(Azimuths(0, 20), 1'000'500));
     scripts.Write("position_" + name, writer.bytes());
+  }
+}
+
+// --- Packets of other lidars: model, then a control byte (the greater size) before each ---
+
+void WriteHesaiPackets(const Folder& folder) {
+  for (int i = 0; i < lidar::kNumHesaiModels; ++i) {
+    for (const int mode : {0x33, 0x37, 0x39, 0x3d, 0x3e}) {
+      Payload script{static_cast<std::uint8_t>(i)};
+      for (int packet = 0; packet < 3; ++packet) {
+        lidar::MadeHesaiPacket made(static_cast<lidar::HesaiModel>(i), static_cast<std::uint8_t>(mode));
+        for (std::size_t block = 0; block < made.num_blocks; ++block) {
+          made.SetCell(block, 3, static_cast<std::uint16_t>(1000 + 100 * block), 50);
+          made.SetCell(block, 9, 0xFFFF, 255);
+        }
+        const bool is_without_number = made.bytes.size() == 1262 || made.bytes.size() == 1194;
+        script = script + Payload{static_cast<std::uint8_t>(is_without_number ? 0 : 1)} + made.bytes;
+      }
+      folder.Write("model_" + std::to_string(i) + "_mode_" + std::to_string(mode), script);
+    }
+  }
+  const std::string table = "Channel,Elevation,Azimuth\r\n1,15,-1.042\r\n2,14.5,3.125\r\n";
+  const Payload kind{lidar::kNumHesaiModels};
+  folder.Write("angles", kind + Payload(table.begin(), table.end()));
+  const std::string other = "EEFF,1,1\nAzimuth;Laser id;Elevation\n+0.5;2;-3\n359;1;1e1\n";
+  folder.Write("angles_in_another_order", kind + Payload(other.begin(), other.end()));
+}
+
+void WriteVelodynePackets(const Folder& folder) {
+  for (int i = 0; i < lidar::kNumVelodyneModels; ++i) {
+    for (const int mode : {0x37, 0x38, 0x39}) {
+      Payload script{static_cast<std::uint8_t>(i)};
+      for (const int azimuth_cdeg : {1000, 18'000, 35'980}) {
+        script = script + Payload{0} + lidar::MakeVelodynePacket(static_cast<lidar::VelodyneModel>(i), static_cast<std::uint8_t>(mode), azimuth_cdeg);
+      }
+      folder.Write("model_" + std::to_string(i) + "_mode_" + std::to_string(mode), script);
+    }
   }
 }
 
@@ -444,6 +483,8 @@ int main(int argc, char** argv) try {
   const Folder data_packets(root / "fuzz_data_packet");
   WriteDataPackets(data_packets);
   WritePositionPackets(Folder(root / "fuzz_position_packet"), data_packets);
+  WriteHesaiPackets(Folder(root / "fuzz_hesai"));
+  WriteVelodynePackets(Folder(root / "fuzz_velodyne"));
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
   WriteAnswers(Folder(root / "fuzz_plotter"));
   WriteCaptures(Folder(root / "fuzz_capture"));

@@ -17,18 +17,18 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-constexpr std::size_t kMaxChannels = 128;
-constexpr int kCdegPerTurn = 36000;
-constexpr std::size_t kNone = 0;  // no such byte in this layout
+constexpr std::size_t kMaxHesaiChannels = 128;
+constexpr int kCdegPerHesaiTurn = 36000;
+constexpr std::size_t kNoByte = 0;  // no such byte in this layout
 
 /// Where a packet of a model has what. Offsets of the head are from the packet's begin, those of the tail from the tail's.
-struct Layout {
+struct HesaiLayout {
   std::string_view name;
   std::array<std::uint16_t, 2> sizes;  // bytes of a packet, without and with what is optional
   std::size_t num_channels;
   std::size_t num_blocks;
   std::size_t head_bytes;
-  std::size_t channels_at;  // kNone: blocks begin with a flag instead of a head
+  std::size_t channels_at;  // kNoByte: blocks begin with a flag instead of a head
   std::size_t blocks_at;
   std::size_t unit_at;
   std::size_t cell_bytes;
@@ -37,34 +37,34 @@ struct Layout {
   std::size_t mode_at;
   std::size_t date_at;
   std::size_t sequence_at;  // beyond the end of a packet without it
-  std::size_t crc_at;       // of the body, from the packet's begin; kNone: it has none
+  std::size_t crc_at;       // of the body, from the packet's begin; kNoByte: it has none
   int unit_mm;              // of the manual
   bool is_counted_back;     // first_ns is of the last column of a packet, else of the first
   std::int64_t first_ns;    // from the packet's stamp to the first shot of that column
   std::int64_t period_ps;   // from column to column
 
-  constexpr std::size_t block_head_bytes() const { return channels_at == kNone ? 4 : 2; }
+  constexpr std::size_t block_head_bytes() const { return channels_at == kNoByte ? 4 : 2; }
   constexpr std::size_t block_bytes() const { return block_head_bytes() + num_channels * cell_bytes; }
-  bool HasSize(std::size_t size_bytes) const { return size_bytes == sizes[0] || size_bytes == sizes[1]; }
+  constexpr bool HasSize(std::size_t size_bytes) const { return size_bytes == sizes[0] || size_bytes == sizes[1]; }
 };
 
 // By HesaiModel. Sources: layouts of tier4/nebula and HesaiLidar_SDK_2.0; times of the latter. In XT heads and in QT64 and QT128 the packets of the
 // sensor end with the number of the packet, in Pandar40P and Pandar64 by its setting; QT128 adds a signature of 32 bytes.
-constexpr std::array<Layout, kNumHesaiModels> kLayouts{{
-    {"Hesai XT16", {564, 568}, 16, 8, 12, 6, 7, 9, 4, 540, 19, 10, 13, 24, kNone, 4, true, 5632 + 368, 50'000'000},
-    {"Hesai XT32", {1076, 1080}, 32, 8, 12, 6, 7, 9, 4, 1052, 19, 10, 13, 24, kNone, 4, true, 5632 + 368, 50'000'000},
-    {"Hesai XT32M", {816, 820}, 32, 6, 12, 6, 7, 9, 4, 792, 19, 10, 13, 24, kNone, 5, true, 5632 + 368, 50'000'000},
-    {"Hesai QT64", {1068, 1072}, 64, 4, 12, 6, 7, 9, 4, 1044, 12, 16, 18, 24, kNone, 4, false, 25'710 + 12'310, 166'666'667},
+constexpr std::array<HesaiLayout, kNumHesaiModels> kHesaiLayouts{{
+    {"Hesai XT16", {564, 568}, 16, 8, 12, 6, 7, 9, 4, 540, 19, 10, 13, 24, kNoByte, 4, true, 5632 + 368, 50'000'000},
+    {"Hesai XT32", {1076, 1080}, 32, 8, 12, 6, 7, 9, 4, 1052, 19, 10, 13, 24, kNoByte, 4, true, 5632 + 368, 50'000'000},
+    {"Hesai XT32M", {816, 820}, 32, 6, 12, 6, 7, 9, 4, 792, 19, 10, 13, 24, kNoByte, 5, true, 5632 + 368, 50'000'000},
+    {"Hesai QT64", {1068, 1072}, 64, 4, 12, 6, 7, 9, 4, 1044, 12, 16, 18, 24, kNoByte, 4, false, 25'710 + 12'310, 166'666'667},
     {"Hesai QT128", {1095, 1127}, 128, 2, 12, 6, 7, 9, 4, 1061, 21, 12, 15, 26, 1040, 4, false, 9000, 111'110'000},
-    {"Hesai Pandar40P", {1262, 1266}, 40, 10, 0, kNone, kNone, kNone, 3, 1240, 10, 14, 16, 22, kNone, 4, true, -28'580 - 54'670, 55'560'000},
-    {"Hesai Pandar64", {1194, 1198}, 64, 6, 8, 2, 3, 5, 3, 1172, 10, 14, 16, 22, kNone, 4, true, -42'580 - 54'668, 55'560'000},
+    {"Hesai Pandar40P", {1262, 1266}, 40, 10, 0, kNoByte, kNoByte, kNoByte, 3, 1240, 10, 14, 16, 22, kNoByte, 4, true, -28'580 - 54'670, 55'560'000},
+    {"Hesai Pandar64", {1194, 1198}, 64, 6, 8, 2, 3, 5, 3, 1172, 10, 14, 16, 22, kNoByte, 4, true, -42'580 - 54'668, 55'560'000},
 }};
 
-constexpr const Layout& LayoutOf(HesaiModel model) { return kLayouts[static_cast<std::size_t>(model)]; }
+constexpr const HesaiLayout& HesaiLayoutOf(HesaiModel model) { return kHesaiLayouts[static_cast<std::size_t>(model)]; }
 
-static_assert(std::ranges::all_of(kLayouts, [](const Layout& layout) {
+static_assert(std::ranges::all_of(kHesaiLayouts, [](const HesaiLayout& layout) {
   const std::size_t body_end = layout.head_bytes + layout.num_blocks * layout.block_bytes();
-  return layout.crc_at == kNone ? layout.tail_at == body_end : layout.crc_at == body_end;
+  return layout.crc_at == kNoByte ? layout.tail_at == body_end : layout.crc_at == body_end;
 }));
 
 std::int64_t FireNs(HesaiModel model, std::size_t channel) {
@@ -96,48 +96,48 @@ std::vector<HesaiAngle> EvenAngles(std::size_t num_channels, double top_deg, dou
 
 std::vector<HesaiAngle> Qt128Angles() {
   std::vector<HesaiAngle> angles(hesai::kQt128LowerAngles.begin(), hesai::kQt128LowerAngles.end());
-  angles.reserve(kMaxChannels);
-  while (angles.size() < kMaxChannels) {
-    const auto& mirrored = angles[kMaxChannels - 1 - angles.size()];
+  angles.reserve(kMaxHesaiChannels);
+  while (angles.size() < kMaxHesaiChannels) {
+    const auto& mirrored = angles[kMaxHesaiChannels - 1 - angles.size()];
     angles.push_back({-mirrored.elevation_deg, -mirrored.azimuth_offset_deg});
   }
   return angles;
 }
 
 /// How the blocks of one azimuth become returns.
-enum class Order { kAsSent, kNearestFirst, kNearestAndFarthest };
+enum class HesaiOrder { kAsSent, kNearestFirst, kNearestAndFarthest };
 
-struct ReturnMode {
+struct HesaiReturnMode {
   std::size_t num_blocks = 1;  // of one azimuth
-  Order order = Order::kAsSent;
+  HesaiOrder order = HesaiOrder::kAsSent;
   std::array<ReturnKind, 2> kinds{};
 
   std::size_t num_returns() const { return num_blocks == 1 ? 1 : 2; }
 };
 
-std::optional<ReturnMode> ReturnModeOf(std::uint8_t byte) {
+std::optional<HesaiReturnMode> HesaiReturnModeOf(std::uint8_t byte) {
   using enum ReturnKind;
   switch (byte) {
     case 0x33:
-      return ReturnMode{1, Order::kAsSent, {kFirst}};
+      return HesaiReturnMode{1, HesaiOrder::kAsSent, {kFirst}};
     case 0x34:
-      return ReturnMode{1, Order::kAsSent, {kSecond}};
+      return HesaiReturnMode{1, HesaiOrder::kAsSent, {kSecond}};
     case 0x37:
-      return ReturnMode{1, Order::kAsSent, {kStrongest}};
+      return HesaiReturnMode{1, HesaiOrder::kAsSent, {kStrongest}};
     case 0x38:
-      return ReturnMode{1, Order::kAsSent, {kLast}};
+      return HesaiReturnMode{1, HesaiOrder::kAsSent, {kLast}};
     case 0x39:
-      return ReturnMode{2, Order::kNearestFirst, {kStrongest, kLast}};
+      return HesaiReturnMode{2, HesaiOrder::kNearestFirst, {kStrongest, kLast}};
     case 0x3a:
-      return ReturnMode{2, Order::kNearestFirst, {kFirst, kSecond}};
+      return HesaiReturnMode{2, HesaiOrder::kNearestFirst, {kFirst, kSecond}};
     case 0x3b:
-      return ReturnMode{2, Order::kNearestFirst, {kFirst, kLast}};
+      return HesaiReturnMode{2, HesaiOrder::kNearestFirst, {kFirst, kLast}};
     case 0x3c:
-      return ReturnMode{2, Order::kNearestFirst, {kFirst, kStrongest}};
+      return HesaiReturnMode{2, HesaiOrder::kNearestFirst, {kFirst, kStrongest}};
     case 0x3d:
-      return ReturnMode{3, Order::kNearestAndFarthest, {kFirst, kLast}};
+      return HesaiReturnMode{3, HesaiOrder::kNearestAndFarthest, {kFirst, kLast}};
     case 0x3e:
-      return ReturnMode{2, Order::kAsSent, {kStrongest, kSecond}};
+      return HesaiReturnMode{2, HesaiOrder::kAsSent, {kStrongest, kSecond}};
     default:
       return std::nullopt;
   }
@@ -148,15 +148,15 @@ constexpr std::uint32_t NearKey(const std::uint8_t* cell) {
   const std::uint32_t range = cell[0] | std::uint32_t{cell[1]} << 8;
   return ((range - 1) & 0xFFFF) << 8 | cell[2];
 }
-constexpr std::uint16_t RangeOf(std::uint32_t key) { return static_cast<std::uint16_t>((key >> 8) + 1); }
-constexpr std::uint8_t ReflectivityOf(std::uint32_t key) { return RangeOf(key) != 0 ? static_cast<std::uint8_t>(key & 0xFF) : 0; }
+constexpr std::uint16_t RangeOfKey(std::uint32_t key) { return static_cast<std::uint16_t>((key >> 8) + 1); }
+constexpr std::uint8_t ReflectivityOfKey(std::uint32_t key) { return RangeOfKey(key) != 0 ? static_cast<std::uint8_t>(key & 0xFF) : 0; }
 
 void CopyBlock(const std::uint8_t* block, std::size_t num_rings, const std::uint16_t* cell_offset, std::size_t num_returns, std::size_t first_return,
                std::uint32_t* range, std::uint8_t* reflectivity) {
   for (std::size_t ring = 0; ring < num_rings; ++ring) {
     const std::uint32_t key = NearKey(block + cell_offset[ring]);
-    range[ring * num_returns + first_return] = RangeOf(key);
-    reflectivity[ring * num_returns + first_return] = ReflectivityOf(key);
+    range[ring * num_returns + first_return] = RangeOfKey(key);
+    reflectivity[ring * num_returns + first_return] = ReflectivityOfKey(key);
   }
 }
 
@@ -167,10 +167,10 @@ void CopyPair(const std::uint8_t* one, const std::uint8_t* other, std::size_t nu
     const std::uint32_t other_key = NearKey(other + cell_offset[ring]);
     const std::uint32_t near = std::min(one_key, other_key);
     const std::uint32_t far = std::max(one_key, other_key);
-    range[2 * ring] = RangeOf(near);
-    range[2 * ring + 1] = RangeOf(far);
-    reflectivity[2 * ring] = ReflectivityOf(near);
-    reflectivity[2 * ring + 1] = ReflectivityOf(far);
+    range[2 * ring] = RangeOfKey(near);
+    range[2 * ring + 1] = RangeOfKey(far);
+    reflectivity[2 * ring] = ReflectivityOfKey(near);
+    reflectivity[2 * ring + 1] = ReflectivityOfKey(far);
   }
 }
 
@@ -181,11 +181,11 @@ void CopyThree(const std::uint8_t* first_block, std::size_t block_bytes, std::si
     std::array<std::uint32_t, 3> keys{};
     for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = NearKey(first_block + i * block_bytes + cell_offset[ring]);
     std::ranges::sort(keys);
-    const std::uint32_t far = RangeOf(keys[2]) != 0 ? keys[2] : keys[1];
-    range[2 * ring] = RangeOf(keys[0]);
-    range[2 * ring + 1] = RangeOf(far);
-    reflectivity[2 * ring] = ReflectivityOf(keys[0]);
-    reflectivity[2 * ring + 1] = ReflectivityOf(far);
+    const std::uint32_t far = RangeOfKey(keys[2]) != 0 ? keys[2] : keys[1];
+    range[2 * ring] = RangeOfKey(keys[0]);
+    range[2 * ring + 1] = RangeOfKey(far);
+    reflectivity[2 * ring] = ReflectivityOfKey(keys[0]);
+    reflectivity[2 * ring + 1] = ReflectivityOfKey(far);
   }
 }
 
@@ -234,8 +234,8 @@ std::optional<std::chrono::sys_seconds> DateOf(Bytes date, bool may_be_seconds) 
   return sys_days(day) + hours(date[3]) + minutes(date[4]) + seconds(date[5]);
 }
 
-bool HasHeadOf(const Layout& layout, Bytes payload) {
-  if (layout.channels_at == kNone) {
+bool HasHeadOf(const HesaiLayout& layout, Bytes payload) {
+  if (layout.channels_at == kNoByte) {
     for (std::size_t block = 0; block < layout.num_blocks; ++block) {
       if (payload[block * layout.block_bytes()] != 0xFF || payload[block * layout.block_bytes() + 1] != 0xEE) return false;
     }
@@ -261,7 +261,7 @@ std::vector<std::string_view> FieldsOf(std::string_view line) {
   }
 }
 
-std::optional<double> NumberOf(std::string_view field) {
+std::optional<double> NumberOfField(std::string_view field) {
   if (field.starts_with('+')) field.remove_prefix(1);
   double number = 0.0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
@@ -304,12 +304,12 @@ std::optional<AngleColumns> ColumnsOf(const std::vector<std::string_view>& title
 
 }  // namespace
 
-std::string_view NameOf(HesaiModel model) { return LayoutOf(model).name; }
+std::string_view NameOf(HesaiModel model) { return HesaiLayoutOf(model).name; }
 
 std::optional<HesaiModel> HesaiModelOf(Bytes payload) {
   for (int i = 0; i < kNumHesaiModels; ++i) {
     const auto model = static_cast<HesaiModel>(i);
-    if (LayoutOf(model).HasSize(payload.size()) && HasHeadOf(LayoutOf(model), payload)) return model;
+    if (HesaiLayoutOf(model).HasSize(payload.size()) && HasHeadOf(HesaiLayoutOf(model), payload)) return model;
   }
   return std::nullopt;
 }
@@ -339,7 +339,7 @@ std::vector<HesaiAngle> ParseHesaiAngles(std::string_view csv) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (csv.size() > kMaxBytes) throw std::runtime_error("has more than " + std::to_string(kMaxBytes) + " bytes: no table of angles");
   if (csv.starts_with(kByteOrderMark)) csv.remove_prefix(kByteOrderMark.size());
-  std::array<std::optional<HesaiAngle>, kMaxChannels> found;
+  std::array<std::optional<HesaiAngle>, kMaxHesaiChannels> found;
   std::size_t num_channels = 0;
   AngleColumns columns;
   bool is_first = true;
@@ -350,7 +350,7 @@ std::vector<HesaiAngle> ParseHesaiAngles(std::string_view csv) {
     if (text.empty() || text.starts_with('#')) continue;
     const auto fields = FieldsOf(text);
     if (is_first && IsOneOf(fields[0], {"eeff"})) continue;  // a mark and version, in newer files of the maker
-    const bool is_title = is_first && !NumberOf(fields[0]);
+    const bool is_title = is_first && !NumberOfField(fields[0]);
     is_first = false;
     if (is_title) {
       const auto titled = ColumnsOf(fields);
@@ -361,12 +361,12 @@ std::vector<HesaiAngle> ParseHesaiAngles(std::string_view csv) {
     if (fields.size() <= std::max({columns.channel, columns.elevation, columns.azimuth})) {
       ThrowAtLine(line, "must have a channel, an elevation and an azimuth");
     }
-    const auto channel = NumberOf(fields[columns.channel]);
-    const auto elevation_deg = NumberOf(fields[columns.elevation]);
-    const auto azimuth_deg = NumberOf(fields[columns.azimuth]);
+    const auto channel = NumberOfField(fields[columns.channel]);
+    const auto elevation_deg = NumberOfField(fields[columns.elevation]);
+    const auto azimuth_deg = NumberOfField(fields[columns.azimuth]);
     if (!channel || !elevation_deg || !azimuth_deg) ThrowAtLine(line, "channel, elevation and azimuth must be numbers");
-    if (*channel < 1.0 || *channel > static_cast<double>(kMaxChannels) || *channel != std::floor(*channel)) {
-      ThrowAtLine(line, "channel must be 1 to " + std::to_string(kMaxChannels));
+    if (*channel < 1.0 || *channel > static_cast<double>(kMaxHesaiChannels) || *channel != std::floor(*channel)) {
+      ThrowAtLine(line, "channel must be 1 to " + std::to_string(kMaxHesaiChannels));
     }
     if (std::abs(*elevation_deg) > 90.0) ThrowAtLine(line, "elevation must be within -90 and 90 deg");
     if (std::abs(*azimuth_deg) > 360.0) ThrowAtLine(line, "azimuth must be within -360 and 360 deg");
@@ -390,7 +390,7 @@ std::vector<HesaiAngle> ParseHesaiAngles(std::string_view csv) {
 }
 
 HesaiReader::HesaiReader(HesaiModel model, const std::vector<HesaiAngle>& angles) : model_(model) {
-  const auto& layout = LayoutOf(model);
+  const auto& layout = HesaiLayoutOf(model);
   if (angles.size() != layout.num_channels) {
     throw std::runtime_error("the table of angles has " + std::to_string(angles.size()) + " channels; " + std::string(layout.name) + " has " +
                              std::to_string(layout.num_channels));
@@ -415,7 +415,7 @@ HesaiReader::HesaiReader(HesaiModel model, const std::vector<HesaiAngle>& angles
   head_.returns = {ReturnKind::kStrongest};
 }
 
-bool HesaiReader::MayBe(std::size_t size_bytes) const { return LayoutOf(model_).HasSize(size_bytes); }
+bool HesaiReader::MayBe(std::size_t size_bytes) const { return HesaiLayoutOf(model_).HasSize(size_bytes); }
 
 PacketFault HesaiReader::Refuse(PacketFault fault, std::string reason) {
   reason_ = std::string(NameOf(model_)) + ": " + std::move(reason);
@@ -424,7 +424,7 @@ PacketFault HesaiReader::Refuse(PacketFault fault, std::string reason) {
 
 void HesaiReader::UpdateHead(std::uint8_t mode, int unit_mm) {
   if (mode == mode_ && unit_mm == unit_mm_) return;
-  const auto returns = ReturnModeOf(mode).value();
+  const auto returns = HesaiReturnModeOf(mode).value();
   mode_ = mode;
   unit_mm_ = unit_mm;
   head_.range_unit_m = unit_mm / 1000.0;
@@ -434,7 +434,7 @@ void HesaiReader::UpdateHead(std::uint8_t mode, int unit_mm) {
 }
 
 PacketFault HesaiReader::Read(Bytes payload, Packet& packet) {
-  const auto& layout = LayoutOf(model_);
+  const auto& layout = HesaiLayoutOf(model_);
   if (!layout.HasSize(payload.size()) || !HasHeadOf(layout, payload)) {
     const bool has_size = layout.HasSize(payload.size());
     const auto other = HesaiModelOf(payload);
@@ -443,12 +443,12 @@ PacketFault HesaiReader::Read(Bytes payload, Packet& packet) {
                   : has_size ? "the packet has the head of another sensor"
                              : "a packet of " + std::to_string(payload.size()) + " bytes, not " + std::to_string(layout.sizes[1]));
   }
-  const int unit_mm = layout.unit_at == kNone ? layout.unit_mm : payload[layout.unit_at];
+  const int unit_mm = layout.unit_at == kNoByte ? layout.unit_mm : payload[layout.unit_at];
   constexpr int kMaxUnitMm = 8;
   if (unit_mm < 1 || unit_mm > kMaxUnitMm) return Refuse(PacketFault::kHead, "a unit of range of " + std::to_string(unit_mm) + " mm");
   const Bytes tail = payload.subspan(layout.tail_at);
   const std::uint8_t mode_byte = tail[layout.mode_at];
-  const auto mode = ReturnModeOf(mode_byte);
+  const auto mode = HesaiReturnModeOf(mode_byte);
   if (!mode || layout.num_blocks % mode->num_blocks != 0)
     return Refuse(PacketFault::kMode, "return mode " + std::to_string(mode_byte) + " is not known");
 
@@ -458,7 +458,7 @@ PacketFault HesaiReader::Read(Bytes payload, Packet& packet) {
   std::array<int, 16> azimuth_cdeg{};  // [blocks]
   for (std::size_t block = 0; block < layout.num_blocks; ++block) {
     azimuth_cdeg[block] = ReadU16LittleEndian(payload, azimuth_at + block * block_bytes);
-    if (azimuth_cdeg[block] >= kCdegPerTurn)
+    if (azimuth_cdeg[block] >= kCdegPerHesaiTurn)
       return Refuse(PacketFault::kAzimuth, "an azimuth of " + std::to_string(azimuth_cdeg[block]) + " / 100 deg");
     if (azimuth_cdeg[block] != azimuth_cdeg[block - block % mode->num_blocks]) {
       return Refuse(PacketFault::kAzimuth, "returns of one shot have two azimuths");
@@ -468,7 +468,7 @@ PacketFault HesaiReader::Read(Bytes payload, Packet& packet) {
   const std::uint32_t us = ReadU32LittleEndian(tail, layout.us_at);
   constexpr std::uint32_t kMaxUs = 2'000'000;  // a leap second may be added to the last one
   if (!date || us >= kMaxUs) return Refuse(PacketFault::kStamp, "a date or time of day that is none");
-  if (layout.crc_at != kNone) {
+  if (layout.crc_at != kNoByte) {
     const Bytes body = payload.subspan(layout.head_bytes, layout.crc_at - layout.head_bytes);
     const bool is_right = Crc32Mpeg2(body) == ReadU32LittleEndian(payload, layout.crc_at);
     if (!is_right && has_right_crc_) return Refuse(PacketFault::kChecksum, "the checksum of the returns is wrong");
@@ -488,22 +488,22 @@ PacketFault HesaiReader::Read(Bytes payload, Packet& packet) {
   packet.reflectivity.resize(packet.range.size());
   for (std::size_t column = 0; column < num_columns; ++column) {
     const std::size_t first_block = column * mode->num_blocks;
-    constexpr double kRadPerCdeg = kTwoPi / kCdegPerTurn;
+    constexpr double kRadPerCdeg = kTwoPi / kCdegPerHesaiTurn;
     packet.columns[column].azimuth_rad = azimuth_cdeg[first_block] * kRadPerCdeg;
     packet.columns[column].time = nanoseconds(layout.first_ns) + (layout.is_counted_back ? -time_of(num_columns - 1 - column) : time_of(column));
     const std::uint8_t* block = payload.data() + layout.head_bytes + first_block * block_bytes;
     std::uint32_t* range = packet.range.data() + column * num_rings * num_returns;
     std::uint8_t* reflectivity = packet.reflectivity.data() + column * num_rings * num_returns;
     switch (mode->order) {
-      case Order::kAsSent:
+      case HesaiOrder::kAsSent:
         for (std::size_t i = 0; i < num_returns; ++i) {
           CopyBlock(block + i * block_bytes, num_rings, cell_offset_.data(), num_returns, i, range, reflectivity);
         }
         break;
-      case Order::kNearestFirst:
+      case HesaiOrder::kNearestFirst:
         CopyPair(block, block + block_bytes, num_rings, cell_offset_.data(), range, reflectivity);
         break;
-      case Order::kNearestAndFarthest:
+      case HesaiOrder::kNearestAndFarthest:
         CopyThree(block, block_bytes, num_rings, cell_offset_.data(), range, reflectivity);
         break;
     }

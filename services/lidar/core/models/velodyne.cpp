@@ -18,27 +18,27 @@ namespace {
 using std::chrono::nanoseconds;
 
 // The packet of all models: 12 blocks of 100 bytes (flag, azimuth, 32 cells of 3 bytes), then stamp, return mode, product.
-constexpr std::size_t kPacketBytes = 1206;
-constexpr std::size_t kNumBlocks = 12;
-constexpr std::size_t kBlockBytes = 100;
-constexpr std::size_t kAzimuthAt = 2;
-constexpr std::size_t kCellsAt = 4;
-constexpr std::size_t kCellBytes = 3;
+constexpr std::size_t kVelodynePacketBytes = 1206;
+constexpr std::size_t kVelodyneNumBlocks = 12;
+constexpr std::size_t kVelodyneBlockBytes = 100;
+constexpr std::size_t kVelodyneAzimuthAt = 2;
+constexpr std::size_t kVelodyneCellsAt = 4;
+constexpr std::size_t kVelodyneCellBytes = 3;
 constexpr std::size_t kLasersPerBlock = 32;
-constexpr std::size_t kStampAt = 1200;
-constexpr std::size_t kModeAt = 1204;
-constexpr std::size_t kProductAt = 1205;
+constexpr std::size_t kVelodyneStampAt = 1200;
+constexpr std::size_t kVelodyneModeAt = 1204;
+constexpr std::size_t kVelodyneProductAt = 1205;
 // Of the blocks of a firing, by bank.
-constexpr std::array<std::uint16_t, 4> kFlags{0xEEFF, 0xDDFF, 0xCCFF, 0xBBFF};
+constexpr std::array<std::uint16_t, 4> kVelodyneFlags{0xEEFF, 0xDDFF, 0xCCFF, 0xBBFF};
 
-constexpr std::uint8_t kStrongestMode = 0x37;
-constexpr std::uint8_t kLastMode = 0x38;
-constexpr std::uint8_t kDualMode = 0x39;
+constexpr std::uint8_t kVelodyneStrongestMode = 0x37;
+constexpr std::uint8_t kVelodyneLastMode = 0x38;
+constexpr std::uint8_t kVelodyneDualMode = 0x39;
 
-constexpr int kCdegPerRound = 36'000;
+constexpr int kCdegPerVelodyneTurn = 36'000;
 constexpr double kGreatestRpm = 1200.0;
 constexpr double kLeastRpm = 300.0;
-constexpr double kCdegPerNsOfRpm = kCdegPerRound / 60.0 / 1e9;
+constexpr double kCdegPerNsOfRpm = kCdegPerVelodyneTurn / 60.0 / 1e9;
 
 struct VelodyneLayout {
   std::string_view name;
@@ -76,7 +76,8 @@ Laser LaserOf(VelodyneModel model, std::size_t id) {
     case VelodyneModel::kHdl32e: {
       // Two fans of 16 beams, 1.333 deg apart, that fire in turn.
       const double lowest_deg = id % 2 == 0 ? -92.0 / 3.0 : -28.0 / 3.0;
-      return {lowest_deg + static_cast<double>(number / 2) * 4.0 / 3.0, 0.0, nanoseconds(1152 * number)};
+      const std::int64_t step = number / 2;
+      return {lowest_deg + static_cast<double>(step) * 4.0 / 3.0, 0.0, nanoseconds(1152 * number)};
     }
     case VelodyneModel::kVlp32c:
       return {velodyne::kVlp32cAngles[id].elevation_deg, velodyne::kVlp32cAngles[id].azimuth_offset_deg, nanoseconds(2304 * (number / 2))};
@@ -89,13 +90,13 @@ Laser LaserOf(VelodyneModel model, std::size_t id) {
   return {};
 }
 
-int ClockwiseCdeg(int from_cdeg, int to_cdeg) { return to_cdeg >= from_cdeg ? to_cdeg - from_cdeg : to_cdeg - from_cdeg + kCdegPerRound; }
+int ClockwiseCdeg(int from_cdeg, int to_cdeg) { return to_cdeg >= from_cdeg ? to_cdeg - from_cdeg : to_cdeg - from_cdeg + kCdegPerVelodyneTurn; }
 
 /// How the firings of a packet follow each other.
 struct Firings {
-  std::array<nanoseconds, kNumBlocks> time{};  // since the first
-  nanoseconds duration{0};                     // until that of the next packet
-  double rate_cdeg = 0.0;                      // per firing; 0 = the packet has no two that follow each other
+  std::array<nanoseconds, kVelodyneNumBlocks> time{};  // since the first
+  nanoseconds duration{0};                             // until that of the next packet
+  double rate_cdeg = 0.0;                              // per firing; 0 = the packet has no two that follow each other
   int sweep_cdeg = 0;
 };
 
@@ -103,11 +104,11 @@ struct Firings {
 /// packet. Steps back are noise of the encoder.
 Firings FiringsOf(std::span<const int> azimuth_cdeg, const VelodyneLayout& layout, double known_cdeg) {
   Firings firings;
-  std::array<int, kNumBlocks> gap_cdeg{};
+  std::array<int, kVelodyneNumBlocks> gap_cdeg{};
   int sum_cdeg = 0;
   int num_steps = 0;
   const auto max_gap_cdeg = static_cast<int>(layout.max_gap_cdeg());
-  const auto is_back = [&](int gap) { return gap >= kCdegPerRound - max_gap_cdeg; };
+  const auto is_back = [&](int gap) { return gap >= kCdegPerVelodyneTurn - max_gap_cdeg; };
   for (std::size_t i = 0; i + 1 < azimuth_cdeg.size(); ++i) {
     gap_cdeg[i] = ClockwiseCdeg(azimuth_cdeg[i], azimuth_cdeg[i + 1]);
     if (!is_back(gap_cdeg[i])) firings.sweep_cdeg += gap_cdeg[i];
@@ -133,10 +134,10 @@ Firings FiringsOf(std::span<const int> azimuth_cdeg, const VelodyneLayout& layou
 std::string_view NameOf(VelodyneModel model) { return VelodyneLayoutOf(model).name; }
 
 std::optional<VelodyneModel> VelodyneModelOf(Bytes payload) {
-  if (payload.size() != kPacketBytes || ReadU16LittleEndian(payload, 0) != kFlags[0]) return std::nullopt;
+  if (payload.size() != kVelodynePacketBytes || ReadU16LittleEndian(payload, 0) != kVelodyneFlags[0]) return std::nullopt;
   for (int i = 0; i < kNumVelodyneModels; ++i) {
     const auto& products = kVelodyneLayouts[static_cast<std::size_t>(i)].products;
-    if (std::ranges::find(products, payload[kProductAt]) != products.end()) return static_cast<VelodyneModel>(i);
+    if (std::ranges::find(products, payload[kVelodyneProductAt]) != products.end()) return static_cast<VelodyneModel>(i);
   }
   return std::nullopt;
 }
@@ -155,7 +156,7 @@ VelodyneReader::VelodyneReader(VelodyneModel model) : model_(model) {
     const std::size_t id = laser_of_ring[ring];
     const auto laser = LaserOf(model, id);
     bank_[ring] = static_cast<std::uint8_t>(id / kLasersPerBlock);
-    cell_offset_[ring] = static_cast<std::uint16_t>(kCellsAt + id % kLasersPerBlock * kCellBytes);
+    cell_offset_[ring] = static_cast<std::uint16_t>(kVelodyneCellsAt + id % kLasersPerBlock * kVelodyneCellBytes);
     Beam beam;
     beam.elevation_rad = DegToRad(laser.elevation_deg);
     beam.azimuth_offset_rad = DegToRad(laser.azimuth_offset_deg);
@@ -166,7 +167,7 @@ VelodyneReader::VelodyneReader(VelodyneModel model) : model_(model) {
   }
 }
 
-bool VelodyneReader::MayBe(std::size_t size_bytes) const { return size_bytes == kPacketBytes; }
+bool VelodyneReader::MayBe(std::size_t size_bytes) const { return size_bytes == kVelodynePacketBytes; }
 
 PacketFault VelodyneReader::Refuse(PacketFault fault, std::string reason) {
   reason_ = std::string(NameOf(model_)) + ": " + std::move(reason);
@@ -175,57 +176,60 @@ PacketFault VelodyneReader::Refuse(PacketFault fault, std::string reason) {
 
 PacketFault VelodyneReader::Read(Bytes payload, Packet& packet) {
   const auto& layout = VelodyneLayoutOf(model_);
-  if (payload.size() != kPacketBytes) {
-    return Refuse(PacketFault::kSize, "a packet of " + std::to_string(payload.size()) + " bytes, not " + std::to_string(kPacketBytes));
+  if (payload.size() != kVelodynePacketBytes) {
+    return Refuse(PacketFault::kSize, "a packet of " + std::to_string(payload.size()) + " bytes, not " + std::to_string(kVelodynePacketBytes));
   }
-  const std::uint8_t product = payload[kProductAt];
+  const std::uint8_t product = payload[kVelodyneProductAt];
   if (std::ranges::find(layout.products, product) == layout.products.end()) {
     const auto other = VelodyneModelOf(payload);
     return Refuse(PacketFault::kHead,
                   other ? "the packet is of a " + std::string(NameOf(*other)) : "the packet has product " + std::to_string(product));
   }
-  const std::uint8_t mode = payload[kModeAt];
-  if (mode != kStrongestMode && mode != kLastMode && mode != kDualMode) {
+  const std::uint8_t mode = payload[kVelodyneModeAt];
+  if (mode != kVelodyneStrongestMode && mode != kVelodyneLastMode && mode != kVelodyneDualMode) {
     return Refuse(PacketFault::kMode, "return mode " + std::to_string(mode) + " is not known");
   }
 
-  const std::size_t num_returns = mode == kDualMode ? 2 : 1;
+  const std::size_t num_returns = mode == kVelodyneDualMode ? 2 : 1;
   const std::size_t blocks_per_column = layout.num_banks * num_returns;
-  const std::size_t num_columns = kNumBlocks / blocks_per_column;  // a VLS-128 in dual return leaves the last four blocks unused
-  std::array<int, kNumBlocks> azimuth_cdeg{};                      // [columns]
-  std::array<std::uint16_t, kNumBlocks> block_at{};                // [columns x banks x returns]
+  const std::size_t num_columns = kVelodyneNumBlocks / blocks_per_column;  // a VLS-128 in dual return leaves the last four blocks unused
+  std::array<int, kVelodyneNumBlocks> azimuth_cdeg{};                      // [columns]
+  std::array<std::uint16_t, kVelodyneNumBlocks> block_at{};                // [columns x banks x returns]
   for (std::size_t column = 0; column < num_columns; ++column) {
-    std::array<std::size_t, kFlags.size()> num_of_bank{};
+    std::array<std::size_t, kVelodyneFlags.size()> num_of_bank{};
     for (std::size_t i = 0; i < blocks_per_column; ++i) {
-      const std::size_t at = (column * blocks_per_column + i) * kBlockBytes;
-      const auto bank = static_cast<std::size_t>(std::ranges::find(kFlags, ReadU16LittleEndian(payload, at)) - kFlags.begin());
+      const std::size_t at = (column * blocks_per_column + i) * kVelodyneBlockBytes;
+      const auto bank = static_cast<std::size_t>(std::ranges::find(kVelodyneFlags, ReadU16LittleEndian(payload, at)) - kVelodyneFlags.begin());
       if (bank >= layout.num_banks || num_of_bank[bank] == num_returns) return Refuse(PacketFault::kHead, "a block has the flag of another sensor");
       block_at[column * blocks_per_column + bank * num_returns + num_of_bank[bank]++] = static_cast<std::uint16_t>(at);
-      int azimuth = ReadU16LittleEndian(payload, at + kAzimuthAt);
+      int azimuth = ReadU16LittleEndian(payload, at + kVelodyneAzimuthAt);
       // The head rounds 359.996 deg to 36000, and may be a step beyond before it wraps.
-      if (azimuth > kCdegPerRound + static_cast<int>(layout.max_gap_cdeg())) {
+      if (azimuth > kCdegPerVelodyneTurn + static_cast<int>(layout.max_gap_cdeg())) {
         return Refuse(PacketFault::kAzimuth, "an azimuth of " + std::to_string(azimuth) + " / 100 deg");
       }
-      if (azimuth >= kCdegPerRound) azimuth -= kCdegPerRound;
+      if (azimuth >= kCdegPerVelodyneTurn) azimuth -= kCdegPerVelodyneTurn;
       if (i == 0) azimuth_cdeg[column] = azimuth;
       if (azimuth != azimuth_cdeg[column]) return Refuse(PacketFault::kAzimuth, "the blocks of one firing have two azimuths");
     }
   }
   const auto firings = FiringsOf(std::span(azimuth_cdeg).first(num_columns), layout, rate_cdeg_);
-  if (firings.sweep_cdeg >= kCdegPerRound) return Refuse(PacketFault::kAzimuth, "the blocks go round more than once");
+  if (firings.sweep_cdeg >= kCdegPerVelodyneTurn) return Refuse(PacketFault::kAzimuth, "the blocks go round more than once");
 
   // Mean of some packets: the azimuths of one are too coarse.
-  constexpr double kShareOfNewRate = 1.0 / 16.0;
-  if (firings.rate_cdeg > 0.0) rate_cdeg_ += (firings.rate_cdeg - rate_cdeg_) * (rate_cdeg_ > 0.0 ? kShareOfNewRate : 1.0);
+  constexpr int kMaxRates = 64;
+  if (firings.rate_cdeg > 0.0) {
+    num_rates_ = std::min(num_rates_ + 1, kMaxRates);
+    rate_cdeg_ += (firings.rate_cdeg - rate_cdeg_) / num_rates_;
+  }
   if (mode != mode_) {
     mode_ = mode;
-    head_.returns = mode == kDualMode   ? std::vector{ReturnKind::kLast, ReturnKind::kStrongest}
-                    : mode == kLastMode ? std::vector{ReturnKind::kLast}
-                                        : std::vector{ReturnKind::kStrongest};
+    head_.returns = mode == kVelodyneDualMode   ? std::vector{ReturnKind::kLast, ReturnKind::kStrongest}
+                    : mode == kVelodyneLastMode ? std::vector{ReturnKind::kLast}
+                                                : std::vector{ReturnKind::kStrongest};
     ++head_number_;
   }
 
-  packet.stamp = std::chrono::microseconds(ReadU32LittleEndian(payload, kStampAt));
+  packet.stamp = std::chrono::microseconds(ReadU32LittleEndian(payload, kVelodyneStampAt));
   packet.duration = firings.duration;
   packet.number.reset();
   const std::size_t num_rings = head_.beams.size();
@@ -234,7 +238,7 @@ PacketFault VelodyneReader::Read(Bytes payload, Packet& packet) {
   packet.reflectivity.resize(packet.range.size());
   std::size_t cell = 0;
   for (std::size_t column = 0; column < num_columns; ++column) {
-    constexpr double kRadPerCdeg = kTwoPi / kCdegPerRound;
+    constexpr double kRadPerCdeg = kTwoPi / kCdegPerVelodyneTurn;
     packet.columns[column].azimuth_rad = azimuth_cdeg[column] * kRadPerCdeg;
     packet.columns[column].time = firings.time[column];
     const std::uint16_t* blocks = block_at.data() + column * blocks_per_column;

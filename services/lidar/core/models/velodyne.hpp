@@ -41,6 +41,7 @@ class VelodyneReader : public PacketReader {
   int head_number_ = 0;
   std::uint8_t mode_ = 0;                         // as in head_
   double rate_cdeg_ = 0.0;                        // per firing, of packets before; 0 = not known
+  int num_rates_ = 0;                             // in rate_cdeg_
   std::array<std::uint16_t, 128> cell_offset_{};  // [rings] in a block
   std::array<std::uint8_t, 128> bank_{};          // [rings] which of the blocks of a firing
   std::string reason_;
