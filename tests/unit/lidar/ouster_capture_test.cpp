@@ -251,7 +251,6 @@ TEST_P(OusterCapture, HasTheSumsOfTheWhole) {
       sum_range_mm += range_mm;
       sum_reflectivity += one.reflectivity;
       ++num_by_channel[std::get<1>(place)];
-      if (i > recording_.truth["truth_packets"][1].get<std::size_t>()) continue;
       for (const std::int64_t value : {static_cast<std::int64_t>(i), std::int64_t{std::get<0>(place)}, std::int64_t{std::get<1>(place)},
                                        std::int64_t{std::get<2>(place)}, std::int64_t{range_mm}, std::int64_t{one.reflectivity}}) {
         rows.push_back(static_cast<std::int32_t>(value));
@@ -314,8 +313,12 @@ TEST(OusterDigest, IsThatOfTheMaker) {
       ids.at(id) = static_cast<std::uint16_t>(id);
       for (const auto& beam : reader.head().beams) {
         for (std::size_t i = 0; i < 2; ++i, ++cell) {
-          range[i][static_cast<std::size_t>(beam.channel) * kColumns + id] = packet.range[cell];
-          reflectivity[i][static_cast<std::size_t>(beam.channel) * kColumns + id] = packet.reflectivity[cell];
+          const auto place = static_cast<std::size_t>(beam.channel) * kColumns + id;
+          range[i][place] = packet.range[cell];
+          // The maker's field has a reflectivity also where there is no return: from the packet itself.
+          const std::size_t in_packet = 32 + (id % 16) * (12 + kRings * 16) + 12 + static_cast<std::size_t>(beam.channel) * 16 + 3 + 4 * i;
+          EXPECT_TRUE(packet.range[cell] != 0 || packet.reflectivity[cell] == 0);
+          reflectivity[i][place] = packet.range[cell] != 0 ? packet.reflectivity[cell] : payload.at(in_packet);
         }
       }
     }

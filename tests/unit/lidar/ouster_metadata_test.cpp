@@ -196,6 +196,16 @@ TEST(OusterMetadata, IsRefusedByFieldAndReason) {
   EXPECT_EQ(fault("/sensor_info/prod_line", 5), "sensor_info.prod_line: must be a text");
 }
 
+TEST(OusterMetadata, WithoutASensorsNameIsRead) {
+  auto json = Nested();
+  json["sensor_info"]["prod_sn"] = "";
+  json["sensor_info"]["prod_line"] = nullptr;
+  EXPECT_FALSE(ParseOusterMetadata(json.dump()).serial_number);
+  EXPECT_EQ(ParseOusterMetadata(json.dump()).ModelName(), "Ouster with 2 rings");
+  json.erase("sensor_info");
+  EXPECT_FALSE(ParseOusterMetadata(json.dump()).init_id);
+}
+
 TEST(OusterMetadata, FromOutsideIsMadePrintable) {
   auto json = Nested();
   json["sensor_info"]["prod_line"] = "OS-1\x1b[2J";

@@ -236,6 +236,18 @@ TEST(OusterReader, RefusesByTheChecksumOnceItWasRight) {
   EXPECT_EQ(reader.Read(MakePacket(metadata, {.has_checksum = false}), packet), PacketFault::kChecksum);
 }
 
+// Not by the reader's own means: the check value of CRC-64/XZ in the catalogue of CRCs, and through the maker every length of a packet.
+TEST(OusterReader, KnowsTheChecksumOfTheCatalogue) {
+  EXPECT_EQ(Checksum({'1', '2', '3', '4', '5', '6', '7', '8', '9'}), 0x995DC9BBDF1939FAU);
+  for (int num_rings = 1; num_rings <= 20; ++num_rings) {
+    const auto metadata = MakeMetadata(OusterProfile::kLowBandwidth, num_rings, 3, 1023);
+    OusterReader reader(metadata);
+    Packet packet;
+    ASSERT_EQ(reader.Read(MakePacket(metadata, {}), packet), PacketFault::kNone);
+    EXPECT_TRUE(reader.has_checksum()) << num_rings;
+  }
+}
+
 TEST(OusterReader, TakesASensorWithoutChecksums) {
   for (const auto profile : {OusterProfile::kSingle, OusterProfile::kFusaDual}) {
     const auto metadata = MakeMetadata(profile, 16);
@@ -331,6 +343,10 @@ TEST(OusterReader, RefusesColumnsThatCannotBe) {
     bad.is_good = [](int /*column*/) { return false; };
     EXPECT_EQ(other.Read(MakePacket(metadata, bad), packet), PacketFault::kNone);
     EXPECT_FALSE(packet.number) << "no place is known";
+    auto filler = MakePacket(metadata, bad);
+    std::fill(filler.begin() + static_cast<std::ptrdiff_t>(head), filler.end() - static_cast<std::ptrdiff_t>(head), std::uint8_t{0});
+    EXPECT_EQ(OusterReader(metadata).Read(filler, packet), PacketFault::kNone);
+    EXPECT_FALSE(packet.number) << "filler is no place";
   }
 }
 
