@@ -211,7 +211,8 @@ OusterReader::OusterReader(const OusterMetadata& metadata)
   const int num_columns = metadata.columns_per_frame;
   const int window_columns = (metadata.last_column - metadata.first_column + num_columns) % num_columns + 1;
   std::vector<int> first_columns;
-  place_in_frame_.assign(static_cast<std::size_t>((num_columns - 1) / metadata.columns_per_packet + 1), -1);
+  const int num_packets = (num_columns - 1) / metadata.columns_per_packet + 1;
+  place_in_frame_.assign(static_cast<std::size_t>(num_packets), -1);
   next_column_.assign(place_in_frame_.size(), 0);
   for (int id = 0; id < num_columns; ++id) {
     const bool is_in_window = (id - metadata.first_column + num_columns) % num_columns < window_columns;

@@ -103,11 +103,12 @@ TEST(OusterReader, LeavesNoReflectivityWhereThereIsNoReturn) {
 }
 
 TEST(OusterReader, GivesTheFarthestRangeOfEachProfile) {
-  for (const auto& [profile, range] : std::vector<std::pair<OusterProfile, std::uint32_t>>{{OusterProfile::kLegacy, 0xF'FFFF},
-                                                                                           {OusterProfile::kSingle, 0x7'FFFF},
-                                                                                           {OusterProfile::kDual, 0x7'FFFF},
-                                                                                           {OusterProfile::kLowBandwidth, 0x7FFF},
-                                                                                           {OusterProfile::kFusaDual, 0x7FFF}}) {
+  for (const auto& [profile, max_range] : std::vector<std::pair<OusterProfile, std::uint32_t>>{{OusterProfile::kLegacy, 0xF'FFFF},
+                                                                                               {OusterProfile::kSingle, 0x7'FFFF},
+                                                                                               {OusterProfile::kDual, 0x7'FFFF},
+                                                                                               {OusterProfile::kLowBandwidth, 0x7FFF},
+                                                                                               {OusterProfile::kFusaDual, 0x7FFF}}) {
+    const std::uint32_t range = max_range;  // for lambdas: a binding cannot be captured
     const auto metadata = MakeMetadata(profile, 16);
     OusterReader reader(metadata);
     Packet packet;
@@ -168,7 +169,9 @@ TEST(OusterReader, NumbersGoOnWhereTheFrameIdBeginsAnew) {
 
 // Packets outside of the window are not sent; those at its edges have columns of bad status.
 TEST(OusterReader, NumbersTheTurnsPacketsThatHoldTheWindow) {
-  for (const auto& [first, last] : std::vector<std::pair<int, int>>{{370, 85}, {2, 500}, {1020, 1023}, {10, 3}, {5, 5}, {1, 0}}) {
+  for (const auto& window : std::vector<std::pair<int, int>>{{370, 85}, {2, 500}, {1020, 1023}, {10, 3}, {5, 5}, {1, 0}}) {
+    const int first = window.first;
+    const int last = window.second;
     SCOPED_TRACE(std::to_string(first) + " to " + std::to_string(last));
     auto metadata = MakeMetadata(OusterProfile::kLowBandwidth, 16);
     metadata.first_column = first;
