@@ -15,9 +15,9 @@
 #include "tests/fuzz/corpus.hpp"
 #include "tests/fuzz/packet_script.hpp"
 #include "tests/unit/data/cloud_text.hpp"
-#include "tests/unit/lidar/hesai_packet.hpp"
+#include "tests/unit/lidar_models/hesai_packet.hpp"
 #include "tests/unit/lidar/packet_maker.hpp"
-#include "tests/unit/lidar/velodyne_packet.hpp"
+#include "tests/unit/lidar_models/velodyne_packet.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
@@ -295,6 +295,31 @@ Payload Pcapng(std::uint16_t link_type, const std::vector<Payload>& frames) {
   return file;
 }
 
+// As ouster_fuzz.cpp takes them: metadata, or a script of a head and steps.
+void WriteOuster(const Folder& folder) {
+  const std::string beams = R"("beam_altitude_angles":[10.5,-5],"beam_azimuth_angles":[1.5,-1.5],"lidar_origin_to_beam_origin_mm":15.806)";
+  const std::string format =
+      R"({"columns_per_frame":1024,"columns_per_packet":16,"pixels_per_column":2,"column_window":[370,85],"udp_profile_lidar":"RNG15_RFL8_NIR8"})";
+  const std::string sensor = R"("prod_line":"OS-1-128","prod_sn":"122246000293","build_rev":"v3.0.1","initialization_id":1629346)";
+  const std::string transform = R"([-1,0,0,0,0,-1,0,0,0,0,1,36.18,0,0,0,1])";
+  const std::string mode = R"("lidar_mode":"1024x10","timestamp_mode":"TIME_FROM_PTP_1588","return_order":"STRONGEST_TO_WEAKEST")";
+  folder.Write("flat",
+               "{" + beams + "," + sensor + "," + mode + R"(,"data_format":)" + format + R"(,"lidar_to_sensor_transform":)" + transform + "}");
+  folder.Write("nested", R"({"beam_intrinsics":{)" + beams + R"(,"beam_to_lidar_transform":[1,0,0,15.8,0,1,0,0,0,0,1,0,0,0,0,1]},"sensor_info":{)" +
+                             sensor + R"(},"config_params":{)" + mode + R"(},"lidar_data_format":)" + format +
+                             R"(,"imu_intrinsics":{"imu_to_sensor_transform":)" + transform + "}}");
+  folder.Write("firmware_1", "{" + beams + R"(,"lidar_mode":"512x20","lidar_data_format":"error: Command not recognized."})");
+  for (const std::uint8_t profile : {0, 1, 2, 3, 4}) {
+    Payload script{profile, 15, 0xF0, 3, 0, 0, 0xFF, 3};
+    for (std::uint8_t i = 0; i < 12; ++i) {
+      const std::uint8_t kind = i < 8 ? 8 : i % 4;
+      script = script + Payload{kind} + LittleEndian(16U * i, 2) + LittleEndian(7, 2) + LittleEndian(1'562'496, 4) + LittleEndian(48'828, 2) +
+               LittleEndian(i == 5 ? 0 : 0xFFF0, 2) + LittleEndian(40U * i, 2) + Payload{i};
+    }
+    folder.Write("packets_" + std::to_string(profile), script);
+  }
+}
+
 void WriteCaptures(const Folder& folder) {
   const Payload data = Udp(format::kDataPort, MakeDataPacket(Azimuths(0, 20), 1'000'000));
   const Payload position = Udp(format::kPositionPort, MakePositionPacket(1'000'000, format::kPpsLocked, Rmc("120000.00", 'A')));
@@ -485,6 +510,7 @@ int main(int argc, char** argv) try {
   WritePositionPackets(Folder(root / "fuzz_position_packet"), data_packets);
   WriteHesaiPackets(Folder(root / "fuzz_hesai"));
   WriteVelodynePackets(Folder(root / "fuzz_velodyne"));
+  WriteOuster(Folder(root / "fuzz_ouster"));
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
   WriteAnswers(Folder(root / "fuzz_plotter"));
   WriteCaptures(Folder(root / "fuzz_capture"));

@@ -36,13 +36,6 @@ ColumnCutter::ColumnCutter(double cut_azimuth_rad, ScanHandler on_scan)
 void ColumnCutter::Add(const PlacedColumns& placed, const ClockReading& clock, const PacketCounts& counts) {
   const auto& columns = placed.packet->columns;
   if (scan_.num_columns() > 0 && placed.head != scan_.head) End(counts);
-  if (columns.empty()) {
-    if (placed.num_lost > 0 && scan_.num_columns() > 0) {
-      scan_.has_hole = true;
-      scan_.num_lost_packets += placed.num_lost;
-    }
-    return;
-  }
   if (placed.num_lost > 0) AddLoss(placed, columns.front().azimuth_rad, counts);
   const auto num_cells = placed.head->num_cells_of_column();
   auto range = placed.packet->range.begin();

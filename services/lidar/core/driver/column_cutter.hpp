@@ -20,7 +20,7 @@ class ColumnCutter {
 
   /// Cost: proportional to the returns.
   ///
-  /// @param placed  its time is greater than that of the packet before
+  /// @param placed  has columns; its time is greater than that of the packet before
   /// @param clock   for the scan that begins in it
   void Add(const PlacedColumns& placed, const ClockReading& clock, const PacketCounts& counts);
 

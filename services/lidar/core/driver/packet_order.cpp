@@ -52,7 +52,24 @@ PacketOrder::Mark PacketOrder::MarkOf(const Packet& packet, const Head& head) {
   return mark;
 }
 
+// A packet without a good column says no more than that it was sent: its stamp may be none.
+void PacketOrder::PassEmpty(Utime host_time, const Packet& packet) {
+  if (!last_ || !packet.number || !last_->mark.number || packet.number->modulus != last_->mark.number->modulus) return;
+  auto& mark = last_->mark;
+  if (packet.number->number != (mark.number->number + 1) % mark.number->modulus) return;
+  mark.number = packet.number;
+  mark.stamp += mark.duration;
+  mark.has_columns = false;
+  last_->time += mark.duration;
+  last_->host_time = host_time;
+  ReleaseWhatIsNext();
+}
+
 PacketVerdict PacketOrder::Add(Utime host_time, const Packet& packet, const Head& head) {
+  if (packet.columns.empty()) {
+    PassEmpty(host_time, packet);
+    return PacketVerdict::kTaken;
+  }
   const auto mark = MarkOf(packet, head);
   if (!last_ || last_->mark.stamp_kind != mark.stamp_kind) {
     Flush();

@@ -96,6 +96,7 @@ class PacketOrder {
   bool IsContinuing(const Mark& mark) const;
   double EndAzimuth() const;
   bool IsKnown(const Mark& mark) const;
+  void PassEmpty(Utime host_time, const Packet& packet);
   void Hold(Utime host_time, const Packet& packet, const Head& head);
   void ReleaseFirst();
   void ReleaseWhatIsNext();

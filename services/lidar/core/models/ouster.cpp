@@ -106,9 +106,9 @@ std::size_t OusterPacketBytes(OusterProfile profile, int num_pixels, int num_col
   return profile == OusterProfile::kLegacy ? columns_bytes : columns_bytes + 2 * kOusterHeadBytes;
 }
 
-// CRC-64/XZ (ECMA-182, reflected), eight bytes at a time: table k holds what a byte does that k more follow.
-constexpr std::size_t kCrcSlices = 8;
-using OusterCrcTables = std::array<std::array<std::uint64_t, 256>, kCrcSlices>;
+// CRC-64/XZ (ECMA-182, reflected), 16 bytes at a time: table k holds what a byte does that k more follow.
+constexpr std::size_t kOusterCrcSlices = 16;
+using OusterCrcTables = std::array<std::array<std::uint64_t, 256>, kOusterCrcSlices>;
 
 constexpr OusterCrcTables MakeOusterCrcTables() {
   constexpr std::uint64_t kPolynomial = 0xC96C'5795'D787'0F42;
@@ -118,7 +118,7 @@ constexpr OusterCrcTables MakeOusterCrcTables() {
     for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) != 0 ? (crc >> 1) ^ kPolynomial : crc >> 1;
     tables[0][byte] = crc;
   }
-  for (std::size_t slice = 1; slice < kCrcSlices; ++slice) {
+  for (std::size_t slice = 1; slice < kOusterCrcSlices; ++slice) {
     for (std::size_t byte = 0; byte < 256; ++byte) {
       const auto before = tables[slice - 1][byte];
       tables[slice][byte] = tables[0][before & 0xFF] ^ (before >> 8);
@@ -129,14 +129,20 @@ constexpr OusterCrcTables MakeOusterCrcTables() {
 
 constexpr OusterCrcTables kOusterCrcTables = MakeOusterCrcTables();
 
+// What eight bytes do that kBehind more follow.
+template <std::size_t kBehind>
+std::uint64_t OusterCrcOfWord(std::uint64_t word) {
+  const auto& tables = kOusterCrcTables;
+  return tables[kBehind + 7][word & 0xFF] ^ tables[kBehind + 6][(word >> 8) & 0xFF] ^ tables[kBehind + 5][(word >> 16) & 0xFF] ^
+         tables[kBehind + 4][(word >> 24) & 0xFF] ^ tables[kBehind + 3][(word >> 32) & 0xFF] ^ tables[kBehind + 2][(word >> 40) & 0xFF] ^
+         tables[kBehind + 1][(word >> 48) & 0xFF] ^ tables[kBehind][word >> 56];
+}
+
 std::uint64_t OusterCrc(Bytes bytes) {
   std::uint64_t crc = ~std::uint64_t{0};
   std::size_t at = 0;
-  for (; at + 8 <= bytes.size(); at += 8) {
-    const std::uint64_t word = crc ^ ReadU64LittleEndian(bytes, at);
-    crc = kOusterCrcTables[7][word & 0xFF] ^ kOusterCrcTables[6][(word >> 8) & 0xFF] ^ kOusterCrcTables[5][(word >> 16) & 0xFF] ^
-          kOusterCrcTables[4][(word >> 24) & 0xFF] ^ kOusterCrcTables[3][(word >> 32) & 0xFF] ^ kOusterCrcTables[2][(word >> 40) & 0xFF] ^
-          kOusterCrcTables[1][(word >> 48) & 0xFF] ^ kOusterCrcTables[0][word >> 56];
+  for (; at + kOusterCrcSlices <= bytes.size(); at += kOusterCrcSlices) {
+    crc = OusterCrcOfWord<8>(crc ^ ReadU64LittleEndian(bytes, at)) ^ OusterCrcOfWord<0>(ReadU64LittleEndian(bytes, at + 8));
   }
   for (; at < bytes.size(); ++at) crc = kOusterCrcTables[0][(crc ^ bytes[at]) & 0xFF] ^ (crc >> 8);
   return ~crc;
@@ -205,7 +211,8 @@ OusterReader::OusterReader(const OusterMetadata& metadata)
   const int num_columns = metadata.columns_per_frame;
   const int window_columns = (metadata.last_column - metadata.first_column + num_columns) % num_columns + 1;
   std::vector<int> first_columns;
-  place_in_frame_.assign(static_cast<std::size_t>((num_columns - 1) / metadata.columns_per_packet + 1), -1);
+  const int num_packets = (num_columns - 1) / metadata.columns_per_packet + 1;
+  place_in_frame_.assign(static_cast<std::size_t>(num_packets), -1);
   next_column_.assign(place_in_frame_.size(), 0);
   for (int id = 0; id < num_columns; ++id) {
     const bool is_in_window = (id - metadata.first_column + num_columns) % num_columns < window_columns;
@@ -273,6 +280,9 @@ PacketFault OusterReader::FindColumns(Bytes payload) {
     good_columns_.push_back({.pixels = column + column_head_bytes_, .id = id, .stamp_ns = stamp_ns});
   }
   if (good_columns_.empty()) {
+    // Filler is no place of a column.
+    const std::size_t last = head_bytes_ + static_cast<std::size_t>(metadata_.columns_per_packet - 1) * column_bytes_;
+    if (ReadU16LittleEndian(payload, last + kOusterIdOffset) != first_id_ + metadata_.columns_per_packet - 1) first_id_ = num_columns;
     if (first_stamp_ns_ >= kOusterMaxStampNs) return Refuse(PacketFault::kStamp, "the stamp of a column is beyond the year 2116");
   } else {
     first_id_ = good_columns_.front().id;

@@ -17,8 +17,8 @@ namespace lookout::lidar {
 /// Data packets in the profile of the metadata. The frame is the maker's lidar frame, whose x axis points to the connector; OusterMetadata has the
 /// transform to the housing.
 ///
-/// Beam::origin_height_m is exact. What beams that start off the axis shift in the level plane, n (cos(azimuth offset) - cos(elevation)), is left
-/// out: to 8 mm on OS0, 1 mm on OS1.
+/// Beam::origin_height_m is exact. What beams that start off the axis shift in the level plane is left out: n (cos(azimuth offset) - cos(elevation))
+/// along the beam and n sin(azimuth offset) across it, together to 8.4 mm on OS0 and 1.6 mm on OS1.
 class OusterReader final : public PacketReader {
  public:
   explicit OusterReader(const OusterMetadata& metadata);
@@ -80,7 +80,7 @@ class OusterReader final : public PacketReader {
   int packets_per_frame_ = 0;
 
   std::vector<GoodColumn> good_columns_;  // of the packet at hand
-  int first_id_ = 0;                      // of its columns, good or not
+  int first_id_ = 0;                      // of its columns, good or not; columns_per_frame where it is not known
   std::uint64_t first_stamp_ns_ = 0;
 
   std::optional<Turning> last_turning_;

@@ -214,7 +214,9 @@ std::optional<int> PortOf(const MetadataField& field) {
 void ReadSensorInfo(const Json& root, OusterMetadata& metadata) {
   metadata.product = WordOf(FindField(root, {"sensor_info.prod_line", "prod_line"}));
   metadata.firmware = WordOf(FindField(root, {"sensor_info.build_rev", "build_rev"}));
-  if (const auto serial = FindField(root, {"sensor_info.prod_sn", "prod_sn"})) metadata.serial_number = SerialOf(serial);
+  const auto serial = FindField(root, {"sensor_info.prod_sn", "prod_sn"});
+  const bool is_blank = serial && serial.value->is_string() && serial.value->get_ref<const std::string&>().empty();
+  if (serial && !is_blank) metadata.serial_number = SerialOf(serial);
   if (const auto id = FindField(root, {"sensor_info.initialization_id", "initialization_id"})) {
     metadata.init_id = static_cast<std::uint32_t>(WholeNumberOf(id, *id.value, 0, (1 << 24) - 1));
   }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/lidar/spinning_capture.hpp"
-#include "tests/unit/lidar/velodyne_packet.hpp"
+#include "tests/unit/lidar_models/spinning_capture.hpp"
+#include "tests/unit/lidar_models/velodyne_packet.hpp"
 
 namespace lookout::lidar {
 namespace {

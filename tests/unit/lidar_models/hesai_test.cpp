@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/lidar/hesai_packet.hpp"
-#include "tests/unit/lidar/spinning_capture.hpp"
+#include "tests/unit/lidar_models/hesai_packet.hpp"
+#include "tests/unit/lidar_models/spinning_capture.hpp"
 
 namespace lookout::lidar {
 namespace {
