@@ -26,6 +26,11 @@ namespace lookout::config {
 
 namespace {
 
+// The file of the lidar had the name of the only model that was read.
+constexpr const char* kLidarFile = "lidar.txtpb";
+constexpr const char* kOldLidarFile = "vlp16.txtpb";
+
+
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
@@ -181,7 +186,14 @@ void FaultList::ThrowIfAny() const {
 ConfigError::ConfigError(std::vector<std::string> faults)
     : std::runtime_error(fmt::format("{}", fmt::join(faults, "\n"))), faults_(std::move(faults)) {}
 
-std::string ReadConfigFile(const std::filesystem::path& file) {
+std::optional<std::filesystem::path> OldConfigFile(const std::filesystem::path& file) {
+  if (file.filename() != kLidarFile || std::filesystem::exists(file)) return std::nullopt;
+  auto old = file.parent_path() / kOldLidarFile;
+  return std::filesystem::is_regular_file(old) ? std::optional(std::move(old)) : std::nullopt;
+}
+
+std::string ReadConfigFile(const std::filesystem::path& named) {
+  const auto file = OldConfigFile(named).value_or(named);
   const auto refuse = [&file](const std::string& reason) { throw ConfigError({file.string() + ":1: file: " + reason}); };
   // Looked at before it is opened: to open a FIFO waits for a writer.
   std::error_code error;
@@ -274,7 +286,8 @@ std::string EffectiveTextOfFile(const std::filesystem::path& file) {
   // All scenes, families and encounters have one schema, whatever their names; so has all evidence.
   const auto folder = file.parent_path().filename();
   const bool is_scene = folder == "scenes" || folder == "families" || folder == "encounters";
-  const std::string schema_file = "config/schema/" + (is_scene ? "scene" : folder == "evidence" ? "evidence" : file.stem().string()) + ".proto";
+  const auto stem = file.filename() == kOldLidarFile ? std::filesystem::path(kLidarFile).stem().string() : file.stem().string();
+  const std::string schema_file = "config/schema/" + (is_scene ? "scene" : folder == "evidence" ? "evidence" : stem) + ".proto";
   const auto* descriptor = FindSchema(schema_file);
   if (descriptor == nullptr) throw ConfigError({file.string() + ":1: file: there is no " + schema_file});
   const std::unique_ptr<Message> message(google::protobuf::MessageFactory::generated_factory()->GetPrototype(descriptor)->New());

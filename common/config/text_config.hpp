@@ -49,7 +49,12 @@ class FaultList {
 /// The text of a config.
 ///
 /// @throws ConfigError when it is no regular file (a FIFO or a device would hold the process), is greater than kMaxConfigBytes, or cannot be read
+///
+/// vlp16.txtpb stands in for lidar.txtpb where that is absent: the name that it had while the VLP-16 was the only lidar.
 std::string ReadConfigFile(const std::filesystem::path& file);
+
+/// @return the file under its old name, where that is there and the new one is not
+std::optional<std::filesystem::path> OldConfigFile(const std::filesystem::path& file);
 inline constexpr std::size_t kMaxConfigBytes = 4UL * 1024 * 1024;  // the largest of ours, the evidence, has 0.3 MB
 
 /// Fills `message` from a text file and checks it against the options of its schema (config/schema/options.proto).

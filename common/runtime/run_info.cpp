@@ -31,6 +31,20 @@ std::vector<std::string> ConfigFiles(const std::filesystem::path& config_folder)
   return names;
 }
 
+// The makers' files about a lidar's beams (beam_file in lidar.txtpb): without them its packets cannot be read.
+std::vector<std::filesystem::path> BeamFiles(const std::filesystem::path& config_folder) {
+  constexpr std::uintmax_t kMaxBytes = 64 << 10;
+  constexpr std::size_t kMaxFiles = 4;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(config_folder)) {
+    const auto extension = entry.path().extension();
+    if (entry.is_regular_file() && (extension == ".json" || extension == ".csv") && entry.file_size() <= kMaxBytes) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  if (files.size() > kMaxFiles) files.resize(kMaxFiles);
+  return files;
+}
+
 // Of the hundred and more that an x86 names.
 constexpr std::array<std::string_view, 14> kFeaturesThatMatter{"sse2", "ssse3", "sse4_1", "sse4_2",  "avx",      "avx2",     "fma",
                                                                "fma4", "bmi1",  "bmi2",   "avx512f", "avx512vl", "avx512dq", "avx512bw"};
@@ -99,6 +113,10 @@ run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& 
     message.file_name.push_back(name);
   }
   faults.ThrowIfAny();
+  for (const auto& file : BeamFiles(config_folder)) {
+    message.file_name.push_back(file.filename().string());
+    message.file_text.push_back(config::ReadConfigFile(file));
+  }
   message.file_name.emplace_back("machine.txt");
   message.file_text.push_back(MachineText());
   for (const auto& type : bus::TypeTexts()) {

@@ -92,6 +92,15 @@ bool IsConfigRight(const ServiceProgram<AnyParams>& program, const std::filesyst
   return false;
 }
 
+// Names of before go on working for a while.
+void TellOldNames(const std::filesystem::path& called, const std::string& name, const std::filesystem::path& config_folder) {
+  const auto own = "lookout-" + name;
+  if (called.filename() == "lookout-vlp16") spdlog::warn("lookout-vlp16 is the old name of {}; it will go", own);
+  if (const auto old = config::OldConfigFile(config_folder / (name + ".txtpb"))) {
+    spdlog::warn("{} is the old name of {}.txtpb, and is read in its place for now: rename it", old->string(), name);
+  }
+}
+
 // Descriptors that libraries opened without O_CLOEXEC must not pile up from start to start. Where they cannot be closed the look-out goes on all the
 // same.
 void CloseAllAtExecution() {
@@ -137,6 +146,7 @@ int RunService(int argc, char** argv, const ServiceProgram<AnyParams>& program) 
       return;
     }
     const auto params = program.load(options.config_folder);
+    TellOldNames(argv[0], program.name, options.config_folder);
     Process process(program.name, options.lcm_url);
     process.OnHangup([&] {
       if (!IsConfigRight(program, options.config_folder, params)) return;

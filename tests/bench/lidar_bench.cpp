@@ -11,6 +11,7 @@ namespace {
 
 using namespace lookout;
 using namespace lookout::vlp16;
+using namespace lookout::lidar;
 
 // 75 packets of 384 returns are 28 800: a scan at 602.8 rpm, so that one scan comes per 75 packets.
 constexpr int kPacketsPerRevolution = 75;
@@ -32,7 +33,7 @@ void RunDecode(benchmark::State& state, bool is_dual, bool with_wire) {
   const auto packets = MakePackets(static_cast<int>(state.range(0)), is_dual);
   std::int64_t num_scans = 0;
   std::int64_t num_cells = 0;
-  Decoder decoder(
+  lookout::vlp16::Decoder decoder(
       DecoderParams{},
       [&](const Scan& scan) {
         ++num_scans;

@@ -17,6 +17,7 @@ namespace {
 
 using namespace lookout;
 using namespace lookout::vlp16;
+using namespace lookout::lidar;
 
 constexpr int kMaxMessageBytes = 120'000;
 
@@ -62,7 +63,7 @@ DecoderParams ParamsOf(Bytes head) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < script::kHeadSizeBytes) return 0;
   std::int64_t last_number = -1;
-  Decoder decoder(
+  lookout::vlp16::Decoder decoder(
       ParamsOf({data, size}), [&](const Scan& turn) { CheckTurn(turn, last_number); },
       [](const SentenceOfLidar& sentence) { Expect(IsPrintable(sentence.text)); });
   Bytes rest = Bytes(data, size).subspan(script::kHeadSizeBytes);

@@ -12,6 +12,8 @@
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using namespace std::chrono_literals;

@@ -20,6 +20,8 @@
 #include "tests/unit/sim/sim_fixture.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using namespace std::chrono_literals;

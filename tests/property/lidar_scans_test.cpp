@@ -10,6 +10,8 @@
 #include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 const Utime kTime = Utime(std::chrono::hours(24 * 20000));

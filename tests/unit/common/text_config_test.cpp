@@ -33,7 +33,7 @@ std::string FaultsOf(const std::string& text, google::protobuf::Message& message
 }
 
 std::string VlpFaults(const std::string& text) {
-  Vlp16 message;
+  Lidar message;
   return FaultsOf(text, message);
 }
 
@@ -187,7 +187,7 @@ TEST(TextConfig, OfNonsenseTellsAHundredFaultsAndHowManyMore) {
 TEST(FaultList, TellsTheFaultsOfTwoFilesEachOnce) {
   FaultList faults;
   const auto load = [](const std::string& name, const std::string& text) {
-    Vlp16 message;
+    Lidar message;
     ParseText(text, name, message);
     return message;
   };
@@ -222,13 +222,13 @@ TEST(FaultLine, NamesTheLineOfTheValueThatIsWrong) {
 }
 
 TEST(TextConfig, OfAFileThatIsNotThereIsRefused) {
-  Vlp16 message;
+  Lidar message;
   EXPECT_THROW(LoadText("/nonexistent.txtpb", message), ConfigError);
 }
 
 std::string FaultOfFile(const fs::path& file) {
   try {
-    Vlp16 message;
+    Lidar message;
     LoadText(file, message);
   } catch (const ConfigError& error) {
     return error.what();

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
+#include "services/lidar/core/vlp16/form.hpp"
 #include "tests/support/counters.hpp"
 #include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using std::chrono::milliseconds;
@@ -16,7 +19,7 @@ using test::MakeDataPacket;
 const Utime kTime = Utime(std::chrono::seconds(1000));
 
 TEST(Bundler, ClosesWhenItHolds24Payloads) {
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, FormOf(0.0));
   for (int round = 0; round < 2; ++round) {
     for (int i = 0; i < 23; ++i) EXPECT_FALSE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(1000, 1), 0)));
     const auto bundle = bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(1000, 1), 0));
@@ -30,7 +33,7 @@ TEST(Bundler, ClosesWhenItHolds24Payloads) {
 }
 
 TEST(Bundler, ClosesWithThePacketInWhichAScanEnds) {
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, FormOf(0.0));
   EXPECT_FALSE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(35000, 40), 0)));
   EXPECT_FALSE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(35480, 40), 0)));
   EXPECT_TRUE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(35960, 40), 0)));
@@ -38,13 +41,13 @@ TEST(Bundler, ClosesWithThePacketInWhichAScanEnds) {
 }
 
 TEST(Bundler, ClosesWhenAScanEndsBetweenTwoPackets) {
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, FormOf(0.0));
   EXPECT_FALSE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(35540, 40), 0)));  // to 35980
   EXPECT_TRUE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(20, 40), 0)));
 }
 
 TEST(Bundler, KeepsWhatCameInOrderWithItsTimesAndPorts) {
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, FormOf(0.0));
   const auto data = MakeDataPacket(Azimuths(1000, 40), 5);
   const auto position = test::MakePositionPacket(6, 2, test::kValidRmc);
   bundler.Add(kTime, 8308, position);
@@ -62,7 +65,7 @@ TEST(Bundler, KeepsWhatCameInOrderWithItsTimesAndPorts) {
 }
 
 TEST(Bundler, DoesNotLetPayloadsWait) {
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, FormOf(0.0));
   EXPECT_FALSE(bundler.AdvanceTo(kTime));
   bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(1000, 40), 5));
   EXPECT_FALSE(bundler.AdvanceTo(kTime + milliseconds(99)));
@@ -71,7 +74,7 @@ TEST(Bundler, DoesNotLetPayloadsWait) {
 }
 
 TEST(Bundler, EndsARunWithAMarkOnlyWhenSomethingCame) {
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, FormOf(0.0));
   EXPECT_FALSE(bundler.Finish(kTime));
   bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(1000, 40), 5));
   bundler.AdvanceTo(kTime + milliseconds(100));
@@ -86,7 +89,7 @@ TEST(Bundler, EndsARunWithAMarkOnlyWhenSomethingCame) {
 }
 
 TEST(Bundler, RefusesWhatIsNotOfTheLidarByReason) {
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, FormOf(0.0));
   const auto data = MakeDataPacket(Azimuths(1000, 40), 5);
   bundler.Add(kTime, 10110, data);
   bundler.Add(kTime, 2368, Bytes(data).first(1205));
@@ -101,7 +104,7 @@ TEST(Bundler, RefusesWhatIsNotOfTheLidarByReason) {
 }
 
 TEST(Bundler, TakesPacketsWithBadContents) {
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, FormOf(0.0));
   const test::Payload garbage(format::kDataPacketSizeBytes, 0xFF);
   bundler.Add(kTime, 2368, garbage);
   const auto bundle = bundler.Finish(kTime);

@@ -10,6 +10,8 @@
 #include "tests/support/files.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using std::chrono::milliseconds;

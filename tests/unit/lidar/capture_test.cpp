@@ -15,6 +15,8 @@
 #include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using Text = std::vector<std::uint8_t>;

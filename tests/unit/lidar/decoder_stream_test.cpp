@@ -7,6 +7,8 @@
 #include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using namespace test;

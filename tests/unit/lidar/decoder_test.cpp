@@ -10,6 +10,8 @@
 #include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using namespace test;
@@ -191,10 +193,10 @@ TEST(Decoder, EndsTheScanWhenTheReturnModeChanges) {
   ASSERT_EQ(bench.scans.size(), 4U);
   EXPECT_TRUE(bench.scans[0].is_partial_end);
   EXPECT_TRUE(bench.scans[1].is_partial_start);
-  EXPECT_EQ(bench.scans[1].mode, ReturnMode::kDual);
+  EXPECT_EQ(bench.scans[1].num_returns(), 2);
   EXPECT_EQ(bench.scans[1].num_columns(), 36);
-  EXPECT_EQ(bench.scans[2].mode, ReturnMode::kLast);
-  EXPECT_EQ(bench.scans[3].model, Model::kPuckHiRes);
+  EXPECT_EQ(bench.scans[2].head->returns, std::vector{lidar::ReturnKind::kLast});
+  EXPECT_EQ(bench.scans[3].head->model, "Puck Hi-Res");
   EXPECT_EQ(bench.scans[3].counts.num_lost, 0);
 }
 

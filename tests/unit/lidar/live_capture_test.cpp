@@ -7,6 +7,8 @@
 #include <vector>
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using Frame = std::vector<std::uint8_t>;

@@ -8,6 +8,8 @@
 #include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 DataPacket PacketOf(std::uint8_t product, std::uint32_t stamp_us = 0, ReturnMode mode = ReturnMode::kStrongest) {

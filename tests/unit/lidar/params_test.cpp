@@ -10,6 +10,8 @@
 #include "tests/support/files.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 class Vlp16Params : public ::testing::Test {

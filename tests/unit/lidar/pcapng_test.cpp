@@ -15,6 +15,8 @@
 #include "tests/support/files.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 namespace fs = std::filesystem;

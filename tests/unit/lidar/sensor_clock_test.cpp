@@ -13,6 +13,8 @@
 #include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using std::chrono::hours;
@@ -362,7 +364,7 @@ TEST(SensorClock, StampsScansToTheMicrosecond) {
 TEST(SensorClock, IsUnknownWithoutPositionPacketsAndWhenTheyStop) {
   SensorClock clock(TimeChoice::kAuto);
   const Utime noon = sys_days(year(2026) / 6 / 15) + hours(12);
-  PlacedPacket packet;
+  StampedPacket packet;
   packet.host_time = noon;
   clock.OnDataPacket(packet);
   EXPECT_EQ(clock.Read(noon).state, ClockState::kUnknown);
@@ -389,7 +391,7 @@ TEST(SensorClock, IsUnknownWithoutPositionPacketsAndWhenTheyStop) {
 TEST(SensorClock, MeasuresTheAgeOfAnRmcFromWhenItWasNew) {
   SensorClock clock(TimeChoice::kAuto);
   const Utime noon = sys_days(year(2026) / 6 / 15) + hours(12);
-  PlacedPacket packet;
+  StampedPacket packet;
   packet.host_time = noon;
   clock.OnDataPacket(packet);
   PositionPacket position;

@@ -8,12 +8,15 @@
 #include "lookout/lidar_clock_t.hpp"
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
+#include "services/lidar/core/vlp16/form.hpp"
 #include "services/lidar/wire.hpp"
 #include "tests/support/counters.hpp"
 #include "tests/support/memory_bus.hpp"
 #include "tests/unit/lidar/packet_maker.hpp"
 
 namespace lookout::vlp16 {
+
+using namespace lidar;
 namespace {
 
 using std::chrono::microseconds;
@@ -135,7 +138,7 @@ TEST(Service, FlushesALogThatHasNoEndMark) {
   Params params;
   params.input = Input::kLog;
   Service service(out.bus, params);
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, vlp16::FormOf(0.0));
   bundler.Add(kServiceTime, 2368, SpinningSensor().Next());
   bus::Publish(out.bus, bus::kLidarPackets, ToMessage(bundler.AdvanceTo(kServiceTime + milliseconds(100)).value()));
   out.Handle();
@@ -157,7 +160,7 @@ TEST(Service, RefusesABadRawMessageAsAWhole) {
                                                                    [](auto& message) { message.host_utime_us[0] = INT64_MAX; }};
   Params params;
   params.input = Input::kLog;
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, vlp16::FormOf(0.0));
   bundler.Add(kServiceTime, 2368, SpinningSensor().Next());
   const auto good = ToMessage(*bundler.Finish(kServiceTime));
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
@@ -178,7 +181,7 @@ TEST(Service, NumbersSentencesAnewBehindAStartMark) {
   Params params;
   params.input = Input::kLog;
   const Service service(out.bus, params);
-  Bundler bundler(2368, 8308, 0.0);
+  Bundler bundler(2368, 8308, vlp16::FormOf(0.0));
   for (int run = 0; run < 2; ++run) {
     for (int i = 0; i < 2; ++i)
       bundler.Add(kServiceTime + milliseconds(i), 8308, test::MakePositionPacket(static_cast<std::uint32_t>(1000 * i), 2, test::kValidRmc));
