@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 std::unique_ptr<Recording> OpenKnown(const fs::path& file) {
   auto recording = OpenRecording(file);
-  if (!recording) throw std::runtime_error(file.string() + ": is no ROS bag, recording of rosbag2 or MCAP file");
+  if (!recording) throw std::runtime_error(file.string() + ": is no ROS bag, recording of rosbag2, MCAP file or folder of scans");
   return recording;
 }
 
@@ -74,6 +74,7 @@ class RecordingReader {
     add(losses.num_damaged, "damaged places");
     add(losses.num_bytes_skipped, "bytes skipped");
     add(losses.num_bad_messages, "messages of no known topic or time");
+    add(losses.num_foreign, "files that are not of it");
     if (losses.is_cut) text += " it ends before its end;";
     if (!losses.first_fault.empty()) text += " the first: " + PrintableLines(losses.first_fault);
     notes_ << "lookout-import: " << text << '\n';
@@ -120,7 +121,10 @@ bool IsUsed(const TopicMap& map, std::initializer_list<Use> uses) {
 
 std::string FileNames(const std::vector<fs::path>& files) {
   std::string text;
-  for (const auto& file : files) text += "imported from " + PrintableLines(file.filename().string()) + "\n";
+  for (const auto& file : files) {
+    const auto plain = fs::absolute(file).lexically_normal();  // of a folder "x/" and "." the name, too
+    text += "imported from " + PrintableLines((plain.has_filename() ? plain : plain.parent_path()).filename().string()) + "\n";
+  }
   return text;
 }
 
@@ -185,7 +189,7 @@ bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, st
     ++run_info.seq;
   };
   std::optional<Utime> last;
-  const bool has_navigation = IsUsed(map, {Use::kImu, Use::kImuFlu, Use::kSentences, Use::kFix, Use::kVelocity});
+  const bool has_navigation = IsUsed(map, {Use::kImu, Use::kImuFlu, Use::kSentences, Use::kFix, Use::kVelocity, Use::kOxts});
   LogMaker log(params, has_navigation, [&](Utime time, const bus::Channel& channel, Bytes bytes) {
     if (!last) write_run_info(time);
     last = time;
@@ -195,7 +199,10 @@ bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, st
   for (const auto& file : request.files) import.Learn(*OpenKnown(file));
   const bool is_whole = RecordingReader(request.files, notes).ForEach([&](const RecordedMessage& message) { import.Take(message); });
   log.Finish();
-  const auto lines = ResultLines(import, log);
+  auto lines = ResultLines(import, log);
+  for (const auto& file : request.files) {
+    for (auto& remark : OpenKnown(file)->remarks()) lines.push_back(std::move(remark));
+  }
   for (const auto& line : lines) notes << "lookout-import: " << line << '\n';
   if (!last) {
     const auto kind = OpenKnown(request.files.front())->kind();

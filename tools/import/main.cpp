@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -47,13 +48,15 @@ struct Options {
 Options ParseOptions(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "Makes an lcm-log of a recording of others: ROS 1 bags, rosbag2 (SQLite, MCAP), MCAP files, and lidar detections of the Autoferry data set "
+      "Makes an lcm-log of a recording of others: ROS 1 bags, rosbag2 (SQLite, MCAP), MCAP files, folders of scans (PCD, KITTI), and lidar "
+      "detections of the Autoferry data set "
       "(scenarioN_lidar_detections.json).",
       "lookout-import");
   app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files, for RUN_INFO and the lidar's ports")
       ->check(CLI::ExistingDirectory)
       ->check(lookout::config::BoatFolderFault);
-  app.add_option("--in", options.inputs, "recording, or folder of a rosbag2; may be given several times: the parts of one recording, in this order")
+  app.add_option("--in", options.inputs,
+                 "recording, or folder of a rosbag2 or of scans; may be given several times: the parts of one recording, in this order")
       ->required()
       ->allow_extra_args(false)
       ->check(CLI::ExistingPath);
@@ -103,6 +106,7 @@ void ImportDetections(const Options& options, const fs::path& input, log::LogOut
 }
 
 bool IsRecording(const fs::path& file) {
+  if (fs::is_directory(file)) return true;
   const auto kind = io::FileKindOf(file);
   return kind == io::FileKind::kRosBag || kind == io::FileKind::kMcap || kind == io::FileKind::kSqlite;
 }
@@ -114,12 +118,13 @@ int Import(const Options& options) {
     for (auto& file : importer::FilesOfRecording(input)) files.push_back(std::move(file));
   }
   for (const auto& file : files) {
+    if (fs::is_directory(file)) continue;  // of scans
     if (const auto reason = io::WhyNot(file, io::Wanted::kImport); !reason.empty()) throw std::runtime_error(reason);
   }
   const bool is_recording = IsRecording(files.front());
   if (!is_recording && !importer::IsFerryScans(files.front())) {
     throw std::runtime_error(files.front().string() +
-                             ": is no recording that is known here: ROS bag, rosbag2, MCAP, or lidar detections of Autoferry "
+                             ": is no recording that is known here: ROS bag, rosbag2, MCAP, folder of scans, or lidar detections of Autoferry "
                              "(scenarioN_lidar_detections.json)");
   }
   if (options.lists) {
@@ -129,7 +134,10 @@ int Import(const Options& options) {
     return EXIT_SUCCESS;
   }
   auto inputs = io::FilesIn(options.config_folder);
-  inputs.insert(inputs.end(), files.begin(), files.end());
+  for (const auto& file : files) {
+    if (!fs::is_directory(file)) inputs.push_back(file);
+    if (fs::is_directory(file)) std::ranges::move(io::FilesIn(file), std::back_inserter(inputs));
+  }
   log::LogOutput output(options.output, {.force = options.force, .inputs = std::move(inputs), .tell = [](const std::string& line) {
                                            std::cerr << "lookout-import: " << line << '\n';
                                          }});

@@ -45,6 +45,7 @@ class RosImport {
   void TakeSentence(const RecordedMessage& message, TimeBasis basis, TopicTally& tally);
   void TakeFix(const RecordedMessage& message, TimeBasis basis, TopicTally& tally);
   void TakeVelocity(const RecordedMessage& message, TimeBasis basis, TopicTally& tally);
+  void TakeOxts(const RecordedMessage& message, TopicTally& tally);
   void AddSentence(Utime time, const std::string& topic, std::string sentence, TopicTally& tally);
 
   TopicMap map_;
