@@ -246,6 +246,7 @@ void CloudScans::FillCells(const RingCloud& cloud, const std::vector<Beam>& beam
   const auto num_cells = columns.azimuth_rad.size() * beams.size();
   scan.range.assign(num_cells, 0);
   scan.reflectivity.assign(num_cells, 0);
+  cell_labels_.assign(cloud.has_labels ? num_cells : 0, 0);
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const auto& point = cloud.points[i];
     const auto cell = static_cast<std::size_t>(columns.column_of_point[i]) * beams.size() + place_of(point);
@@ -255,6 +256,7 @@ void CloudScans::FillCells(const RingCloud& cloud, const std::vector<Beam>& beam
     if (before != 0 && before <= count) continue;
     scan.range[cell] = std::bit_cast<std::int16_t>(count);
     scan.reflectivity[cell] = point.reflectivity;
+    if (cloud.has_labels) cell_labels_[cell] = point.label;
   }
 }
 

@@ -43,6 +43,9 @@ class CloudScans {
   ///         firing nor place; a range is rounded to a unit of 2 mm, or as much as the farthest point needs
   std::vector<lidar_scan_t> Convert(const RosPointCloud& cloud, std::int64_t stamp_ns, const std::string& model);
 
+  /// Labels of the cells of the last scan: of all its parts, in their order; without any where its cloud had none.
+  const std::vector<std::uint32_t>& cell_labels() const { return cell_labels_; }
+
   const CloudCounts& counts() const { return counts_; }
   /// What the clouds lack or how they are read, in words, for people and RUN_INFO.
   std::vector<std::string> Remarks() const;
@@ -84,6 +87,7 @@ class CloudScans {
   bool is_settled_ = false;
   std::int64_t next_seq_ = 0;
   CloudCounts counts_;
+  std::vector<std::uint32_t> cell_labels_;
   std::string last_refusal_;
   bool has_times_ = true;
   bool has_rings_ = true;

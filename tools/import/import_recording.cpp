@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <ostream>
 #include <stdexcept>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "services/vlp16/params.hpp"
 #include "tools/import/log_maker.hpp"
 #include "tools/import/ros_import.hpp"
+#include "tools/import/truth_files.hpp"
 
 namespace lookout::importer {
 
@@ -119,6 +121,33 @@ bool IsUsed(const TopicMap& map, std::initializer_list<Use> uses) {
   return std::ranges::any_of(map, [&](const auto& topic) { return std::ranges::find(uses, topic.second.use) != uses.end(); });
 }
 
+// @return nullptr where none is wanted
+std::unique_ptr<TruthFiles> OpenTruth(const RecordingRequest& request, std::ostream& notes) {
+  if (!request.truth_folder) return nullptr;
+  std::string text;
+  for (const auto& file : request.files) {
+    if (text.empty()) text = OpenKnown(file)->default_labels();
+  }
+  std::string name = "labels";
+  if (request.label_map_file) {
+    name = request.label_map_file->string();
+    text = config::ReadConfigFile(*request.label_map_file);
+  } else if (text.empty()) {
+    throw std::runtime_error("--truth: what the labels mean is not known here: give a file with their meaning as --labels");
+  } else {
+    notes << "lookout-import: what labels mean; to change it, keep these lines in a file, edit it and give it as --labels\n" << text;
+  }
+  return std::make_unique<TruthFiles>(*request.truth_folder, ParseLabelMap(text, name), request.force);
+}
+
+void FinishTruth(const RecordingRequest& request, TruthFiles& truth, std::ostream& notes) {
+  if (truth.num_scans() == 0) throw std::runtime_error(request.files.front().string() + ": no scan has labels for --truth");
+  truth.Finish();
+  notes << fmt::format("lookout-import: truth: {} scans, {} objects", truth.num_scans(), truth.num_objects());
+  if (truth.num_unknown() > 0) notes << fmt::format(", {} returns of classes whose meaning is not given, taken for none", truth.num_unknown());
+  notes << '\n';
+}
+
 std::string FileNames(const std::vector<fs::path>& files) {
   std::string text;
   for (const auto& file : files) {
@@ -178,6 +207,7 @@ bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, st
   const auto map_text = TopicMapText(topics, map);
   notes << (request.topic_map_file ? "" : "lookout-import: guessed; to change it, keep these lines in a file, edit it and give it as --topics\n")
         << map_text;
+  auto truth = OpenTruth(request, notes);
   const auto params = vlp16::LoadParams(request.config_folder);
   auto run_info = runtime::MakeRunInfo("import", request.config_folder);
   run_info.file_name.emplace_back("lookout-import");
@@ -195,7 +225,7 @@ bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, st
     last = time;
     output.Write(time, channel.name, bytes);
   });
-  RosImport import(map, log);
+  RosImport import(map, log, truth.get());
   for (const auto& file : request.files) import.Learn(*OpenKnown(file));
   const bool is_whole = RecordingReader(request.files, notes).ForEach([&](const RecordedMessage& message) { import.Take(message); });
   log.Finish();
@@ -204,6 +234,7 @@ bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, st
     for (auto& remark : OpenKnown(file)->remarks()) lines.push_back(std::move(remark));
   }
   for (const auto& line : lines) notes << "lookout-import: " << line << '\n';
+  if (truth && last) FinishTruth(request, *truth, notes);
   if (!last) {
     const auto kind = OpenKnown(request.files.front())->kind();
     throw std::runtime_error(request.files.front().string() + ": is a " + kind + " that holds nothing that is imported");

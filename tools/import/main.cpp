@@ -40,6 +40,8 @@ struct Options {
   std::vector<fs::path> inputs;
   fs::path output;
   fs::path topic_map;
+  fs::path truth;
+  fs::path labels;
   bool lists = false;
   bool force = false;
 };
@@ -64,8 +66,12 @@ Options ParseOptions(int argc, char** argv) {
   app.add_option("--topics", options.topic_map,
                  "text file, a line for each topic: TOPIC USE [time=auto|stamp|recorded]; without it they are guessed. Uses: " + importer::UseWords())
       ->check(CLI::ExistingFile);
+  auto* truth = app.add_option("--truth", options.truth, "write the labels of the scans to this folder, as lookout-eval --truth reads them");
+  app.add_option("--labels", options.labels, "text file, a line for each class of labels: CLASS water|land|obstacle|none [NAME]")
+      ->check(CLI::ExistingFile)
+      ->needs(truth);
   app.add_flag("--list", options.lists, "print the topics and what they would become, as a file for --topics, and exit");
-  app.add_flag("--force", options.force, "replace an existing --out");
+  app.add_flag("--force", options.force, "replace an existing --out, and files of --truth");
   app.set_version_flag("--version", "lookout-import " + runtime::Version());
   app.footer("Exit code: 0 done; 1 failed; 2 wrong command line or config; 3 the log is written, but the recording is damaged.");
   try {
@@ -142,11 +148,13 @@ int Import(const Options& options) {
                                            std::cerr << "lookout-import: " << line << '\n';
                                          }});
   if (!is_recording) {
+    if (!options.truth.empty()) throw std::runtime_error(files.front().string() + ": has no labels");
     ImportDetections(options, files.front(), output);
     return EXIT_SUCCESS;
   }
-  const auto topic_map = options.topic_map.empty() ? std::nullopt : std::optional(options.topic_map);
-  const bool is_whole = importer::ImportRecording({options.config_folder, files, topic_map}, output, std::cerr);
+  const auto given = [](const fs::path& path) { return path.empty() ? std::nullopt : std::optional(path); };
+  const bool is_whole = importer::ImportRecording(
+      {options.config_folder, files, given(options.topic_map), given(options.truth), given(options.labels), options.force}, output, std::cerr);
   output.Commit();
   return is_whole ? EXIT_SUCCESS : kExitDamaged;
 }

@@ -144,6 +144,7 @@ void RosImport::TakeCloud(const RecordedMessage& message, TimeBasis basis, Topic
   if (!time_ns) return;
   const auto parts = clouds_.Convert(*cloud, *time_ns, ModelOf(message.topic->type));
   ++(parts.empty() ? tally.num_empty : tally.num_used);
+  if (truth_ != nullptr) truth_->Add(parts, clouds_.cell_labels());
   for (const auto& part : parts) {
     ImportItem item;
     item.kind = ImportItem::Kind::kScanPart;
