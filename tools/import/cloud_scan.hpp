@@ -20,7 +20,7 @@ struct CloudCounts {
   std::int64_t num_empty = 0;          // no return
   std::int64_t num_out_of_range = 0;   // RingCloud; or above or below the bands
   std::int64_t num_no_time = 0;        // RingCloud; of clouds whose times are used
-  std::int64_t num_hidden = 0;         // another point of the same ring and firing is nearer: second returns, or the end of a turn over its begin
+  std::int64_t num_hidden = 0;         // another point of the same ring and firing is nearer: third returns, or the end of a turn over its begin
   std::int64_t num_no_ring = 0;        // of a ring that is not known: fewer than kMinRingPoints so far
   std::int64_t num_refused = 0;        // clouds: no fields x y z, or more columns and rings than a scan may have
   std::int64_t num_times_refused = 0;  // clouds: RingCloud::are_times_refused
@@ -77,6 +77,15 @@ class CloudScans {
   std::vector<Beam> SortIntoBeams(RingCloud& cloud);
   static std::array<std::int32_t, kMaxImportRings> PlacesOf(const std::vector<Beam>& beams);
   static lidar_scan_t HeadOf(const std::vector<Beam>& beams, const CloudColumns& columns, std::int64_t stamp_ns);
+  // [shots] places of points in the cloud; `second` is empty where the cloud has one return of a shot.
+  static constexpr std::int32_t kNoPoint = -1;
+  struct CellPoints {
+    std::vector<std::int32_t> first;
+    std::vector<std::int32_t> second;
+  };
+  bool IsOneShot(const RingPoint& one, const RingPoint& other) const;
+  CellPoints SortIntoCells(const RingCloud& cloud, const std::vector<std::size_t>& cell_of_point, const std::vector<double>& ranges_m,
+                           std::size_t num_cells);
   void FillCells(const RingCloud& cloud, const std::vector<Beam>& beams, const CloudColumns& columns, lidar_scan_t& scan);
   std::vector<lidar_scan_t> Refuse(std::string reason);
 
@@ -92,6 +101,7 @@ class CloudScans {
   bool has_times_ = true;
   bool has_rings_ = true;
   bool has_reflectivity_ = true;
+  bool has_second_returns_ = false;
   bool is_clock_other_ = false;
 };
 

@@ -44,7 +44,10 @@ LabelMap ParseLabelMap(const std::string& text, const std::string& name) {
     const auto fault = [&](const std::string& reason) { faults.Add(fmt::format("{}:{}: {}", name, number, reason)); };
     std::uint16_t kind = 0;
     const auto [end, error] = std::from_chars(label.data(), label.data() + label.size(), kind);
-    if (error != std::errc() || end != label.data() + label.size()) fault("'" + label + "' is no class from 0 to 65535");
+    if (error != std::errc() || end != label.data() + label.size()) {
+      fault("'" + label + "' is no class from 0 to 65535");
+      continue;
+    }
     const auto* const known = std::ranges::find(kLabelUses, std::string_view(use), &std::pair<std::string_view, LabelUse>::first);
     if (known == kLabelUses.end()) fault("'" + use + "' is none of water, land, obstacle, none");
     if (known != kLabelUses.end()) meaning.use = known->second;

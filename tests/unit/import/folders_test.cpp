@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/navigator/core/nmea.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/import/made_folders.hpp"
 #include "tools/import/box_labels.hpp"
 #include "tools/import/cloud_points.hpp"

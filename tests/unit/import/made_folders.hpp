@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
-
-#include "tests/support/files.hpp"
 
 namespace lookout::importer::test {
 
@@ -128,7 +127,7 @@ inline std::string OxtsText() {
 
 inline void WriteIn(const std::filesystem::path& folder, const std::string& name, const std::string& bytes) {
   std::filesystem::create_directories(folder);
-  support::WriteFile(folder / name, bytes);
+  std::ofstream(folder / name, std::ios::binary) << bytes;
 }
 
 }  // namespace lookout::importer::test
