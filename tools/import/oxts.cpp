@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "common/core/angles.hpp"
 #include "tools/import/ros_message.hpp"

@@ -4,7 +4,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include "common/core/bytes.hpp"
 #include "tools/import/file_bytes.hpp"

@@ -31,7 +31,7 @@ std::optional<Stamp> StampOfName(std::string_view stem);
 class TimeList {
  public:
   /// A list is not longer, and a line of it neither.
-  static constexpr std::size_t kMaxTimes = 4'000'000;
+  static constexpr std::size_t kMaxTimes = 1'000'000;
   static constexpr std::size_t kMaxTimeLineBytes = 4096;
 
   /// Lines "STAMP", "NAME STAMP" or "STAMP NAME"; a comma or semicolon parts words, too. # begins a comment. A line that is empty holds the place of
