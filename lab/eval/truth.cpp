@@ -14,7 +14,7 @@ namespace {
 // As lookout-export has it: the nearest microsecond.
 std::int64_t ToMicroseconds(std::int64_t time_ns) { return static_cast<std::int64_t>(std::floor((static_cast<double>(time_ns) + 500.0) / 1000.0)); }
 
-std::tuple<std::int64_t, int, int> OrderOf(const Truth::Return& made) { return {made.utime_us, made.ring, made.return_index}; }
+std::tuple<std::int64_t, int, int, int> OrderOf(const Truth::Return& made) { return {made.utime_us, made.column, made.ring, made.return_index}; }
 
 }  // namespace
 
@@ -69,12 +69,14 @@ Truth::Truth(const std::filesystem::path& folder) {
     poses_[poses.WholeNumber(0, 0, kMaxTime)] = {poses.Number(1), poses.Number(2), poses.Number(3), poses.Number(4), poses.Number(5)};
   }
   // Truths of older simulators end before the places.
-  data::CsvFile returns(folder / "returns.csv", {"utime_us", "ring", "return_index", "object_id"}, {"x_m", "y_m", "z_m"});
+  data::CsvFile returns(folder / "returns.csv", {"utime_us", "ring", "return_index", "object_id"}, {"x_m", "y_m", "z_m", "column"});
   const bool has_places = returns.Has(4) && returns.Has(5) && returns.Has(6);
+  has_columns_ = returns.Has(7);
   while (returns.Next()) {
     Return made{returns.WholeNumber(0, 0, kMaxTime), whole(returns, 1), whole(returns, 2), whole(returns, 3),
                 Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())};
     if (has_places) made.p_lidar_m = Eigen::Vector3d(returns.Number(4), returns.Number(5), returns.Number(6)).cast<float>();
+    if (has_columns_) made.column = static_cast<int>(returns.WholeNumber(7, 0, kMaxId));
     returns_.push_back(made);
   }
   std::ranges::sort(returns_, {}, OrderOf);
@@ -98,7 +100,15 @@ std::map<int, int> Truth::CountReturns(const TruthSpan& window) const {
   return counts;
 }
 
-const Truth::Return* Truth::Find(std::int64_t utime_us, int ring, int return_index) const {
+const Truth::Return* Truth::Find(std::int64_t utime_us, int ring, int return_index, int column) const {
+  if (has_columns_) {
+    for (std::int64_t off_us = -tolerance_us_; off_us <= tolerance_us_; ++off_us) {
+      const std::tuple wanted(utime_us + off_us, column, ring, return_index);
+      const auto made = std::ranges::lower_bound(returns_, wanted, {}, OrderOf);
+      if (made != returns_.end() && OrderOf(*made) == wanted) return &*made;
+    }
+    return nullptr;
+  }
   for (auto made = std::ranges::lower_bound(returns_, utime_us - tolerance_us_, {}, &Return::utime_us);
        made != returns_.end() && made->utime_us <= utime_us + tolerance_us_; ++made) {
     if (made->ring == ring && made->return_index == return_index) return &*made;
@@ -157,7 +167,7 @@ void Truth::ForEachReturn(const lidar_scan_t& part,
       for (int k = 0; k < part.num_returns; ++k, ++cell) {
         if (part.range[cell] == 0) continue;
         const std::int64_t time_ns = std::int64_t{part.time_ns[column]} + part.time_offset_ns[ring];
-        handle(cell, time_ns, Find(part.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k));
+        handle(cell, time_ns, Find(part.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k, part.first_column + static_cast<int>(column)));
       }
     }
   }

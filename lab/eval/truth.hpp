@@ -93,7 +93,9 @@ class Truth {
     int object_id;
     /// Lidar frame, without noise; NaN where the files do not say it.
     Eigen::Vector3f p_lidar_m;
+    int column = kNoColumn;  // of the whole scan; where the files say it
   };
+  static constexpr int kNoColumn = -1;
 
   /// @param returns  some microseconds of them, in any order; those of later calls are later
   void AddReturns(std::vector<Return> returns);
@@ -101,8 +103,9 @@ class Truth {
   /// By object. @param window  times; both are in it
   std::map<int, int> CountReturns(const TruthSpan& window) const;
 
+  /// @param column  of the whole scan. It counts where the files say it: of clouds without times all returns of a ring are of one
   /// @return a return; times that differ by a microsecond are the same one (a laser fires every 55 us). nullptr = not in the truth
-  const Return* Find(std::int64_t utime_us, int ring, int return_index) const;
+  const Return* Find(std::int64_t utime_us, int ring, int return_index, int column = kNoColumn) const;
 
   /// @param window  times; both are in it
   /// @return the return of this ring in this direction (the cosine of the angle between is `least_cosine` or more) that is nearest to it; nullptr =
@@ -127,6 +130,7 @@ class Truth {
   std::map<std::int64_t, TruthPose> poses_;
   std::deque<Return> returns_;  // by time
   std::int64_t tolerance_us_ = 1;
+  bool has_columns_ = false;
 };
 
 }  // namespace lookout::eval

@@ -1,8 +1,35 @@
 // Seeds: recordings of others.
 #include "tests/fuzz/corpus.hpp"
+#include "tests/unit/import/made_folders.hpp"
 #include "tests/unit/import/made_recordings.hpp"
 
 namespace lookout::fuzz {
+
+namespace {
+
+void WriteScanFolders(const std::filesystem::path& root) {
+  namespace made = importer::test;
+  const Folder seeds(root / "fuzz_scan_folder");
+  const auto write = [&](const std::string& name, char kind, const std::string& bytes) {
+    Payload seed{static_cast<std::uint8_t>(kind)};
+    seed.insert(seed.end(), bytes.begin(), bytes.end());
+    seeds.Write(name, seed);
+  };
+  auto points = made::MadeTurn(10.0, 30.0, 10U);
+  points.resize(64);
+  write("text", 0, made::PcdBytes(points, made::PcdKind::kText));
+  write("binary", 0, made::PcdBytes(points, made::PcdKind::kBinary, 4));
+  write("compressed", 1, made::PcdBytes(points, made::PcdKind::kCompressed));
+  write("kitti", 2, made::KittiBytes(points) + made::LabelBytes(points));
+  write("boxes", 3,
+        R"({"labels":[{"id":0,"category":"ship","box3d":{"dimension":{"width":1,"length":4,"height":6},"location":{"x":8,"y":0,"z":0},)"
+        R"("orientation":{"rotationYaw":0.5}}}]})");
+  write("oxts", 4, made::OxtsText());
+  write("times", 5, "2011-09-26 13:02:25.964389445\n1.0e-01\na.pcd 1621234567.5\n");
+  write("labels", 6, "10 obstacle car\n50 land\n");
+}
+
+}  // namespace
 
 void WriteRecordings(const std::filesystem::path& root) {
   namespace made = importer::test;
@@ -19,6 +46,7 @@ void WriteRecordings(const std::filesystem::path& root) {
   files.Write("zstd", made::MakeMcap(cdr, Packing::kZstd));
   files.Write("lz4", made::MakeMcap(cdr, Packing::kLz4));
   Folder(root / "fuzz_rosbag2").Write("database", made::MakeDatabase(cdr));
+  WriteScanFolders(root);
   const Folder messages(root / "fuzz_ros_message");
   for (const auto encoding : {Encoding::kRos1, Encoding::kCdr}) {
     const auto first = static_cast<std::uint8_t>(encoding == Encoding::kRos1 ? 0 : 8);

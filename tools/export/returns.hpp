@@ -18,6 +18,7 @@ namespace lookout::exporter {
 
 struct Return {
   std::int64_t utime_us;  // at which its laser fired, nearest microsecond
+  int column;             // of the part, from 0
   int ring;               // from the lowest beam up
   int return_index;
   double azimuth_rad;  // clockwise from the lidar's x axis; not wrapped
@@ -50,6 +51,7 @@ void ForEachReturn(const lidar_scan_t& scan, const segments_t* labels, Use use) 
         // Nearest microsecond, halves up; the shift keeps the division of negative numbers downwards.
         constexpr std::int64_t kShiftUs = 10'000'000;
         result.utime_us = scan.utime_us + (time_ns + 500 + kShiftUs * 1000) / 1000 - kShiftUs;
+        result.column = static_cast<int>(column);
         result.ring = static_cast<int>(ring);
         result.return_index = static_cast<int>(k);
         result.azimuth_rad = static_cast<double>(scan.azimuth_rad[column]) + static_cast<double>(scan.azimuth_offset_rad[ring]);

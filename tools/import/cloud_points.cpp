@@ -170,11 +170,13 @@ std::optional<RingCloud> ToRingCloud(const RosPointCloud& cloud, std::string& wh
   const auto* const ring = FindField(cloud, {"ring", "line", "channel"});
   const auto* const time = FindField(cloud, {"time", "t", "offset_time", "timestamp"});
   const auto* const reflectivity = FindField(cloud, {"reflectivity", "intensity"});
+  const auto* const label = FindField(cloud, {"label"});
   RingCloud result;
   result.height = static_cast<std::int32_t>(cloud.height);
   result.width = static_cast<std::int32_t>(cloud.width);
   result.has_times = time != nullptr;
   result.has_reflectivity = reflectivity != nullptr;
+  result.has_labels = label != nullptr;
   const bool are_rows_rings = ring == nullptr && result.height > 1 && result.height <= kMaxImportRings && result.width > 1;
   result.has_rings = ring != nullptr || are_rows_rings;
   const PointTimes times(cloud, time);
@@ -211,6 +213,10 @@ std::optional<RingCloud> ToRingCloud(const RosPointCloud& cloud, std::string& wh
       made.ring = static_cast<std::int32_t>(number);
       made.row = row;
       made.column = column;
+      if (label != nullptr) {
+        const double value = ValueOf(*label, point, cloud.is_big_endian);
+        made.label = value > 0.0 ? static_cast<std::uint32_t>(std::min(value, 4294967295.0)) : 0;
+      }
       if (reflectivity == nullptr) continue;
       const double value = ValueOf(*reflectivity, point, cloud.is_big_endian);
       made.reflectivity = static_cast<std::uint8_t>(value > 0.0 ? std::min(std::round(value), 255.0) : 0.0);

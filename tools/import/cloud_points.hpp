@@ -21,6 +21,7 @@ struct RingPoint {
   std::int32_t row = 0;      // place in the cloud
   std::int32_t column = 0;
   std::uint8_t reflectivity = 0;
+  std::uint32_t label = 0;  // class in the lower, instance in the upper 16 bits
 };
 
 struct RingCloud {
@@ -32,6 +33,7 @@ struct RingCloud {
   bool has_rings = false;  // by a field, or as rows
   bool has_times = false;
   bool has_reflectivity = false;
+  bool has_labels = false;
   bool is_clock_other = false;        // stamps of points are more than a second off the cloud's: only their differences count
   std::int64_t num_empty = 0;         // no return: at the origin, or not finite
   bool are_times_refused = false;     // more than a few are no times of one turn, so has_times is false
@@ -46,7 +48,7 @@ inline constexpr std::int64_t kMaxPointTimeOffNs = 1'000'000'000;  // of a point
 inline constexpr std::int64_t kMaxNoTimeShare = 100;               // one point in so many may lack a time, and one at least
 
 /// Fields, by name: x y z; `ring`, `line` or `channel`; `time` (s since the stamp, Velodyne), `t` or `offset_time` (ns since the stamp, Ouster),
-/// `timestamp` (s or ns since 1970: Hesai, RoboSense, Livox); `reflectivity` or `intensity`.
+/// `timestamp` (s or ns since 1970: Hesai, RoboSense, Livox); `reflectivity` or `intensity`; `label`.
 /// A cloud of at most kMaxImportRings rows of several columns without a field for rings has its rows as rings.
 ///
 /// @param why  is told in words where there is no result

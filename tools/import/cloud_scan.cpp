@@ -28,7 +28,7 @@ constexpr double kMinBandsRad = 1e-3;           // all bands together
 
 // Splits a scan into messages that fit.
 std::vector<lidar_scan_t> SplitScan(const lidar_scan_t& scan) {
-  const auto cells_per_column = static_cast<std::size_t>(scan.num_rings);
+  const auto cells_per_column = static_cast<std::size_t>(scan.num_rings) * static_cast<std::size_t>(scan.num_returns);
   lidar_scan_t head = scan;
   head.azimuth_rad.clear();
   head.time_ns.clear();
@@ -231,30 +231,87 @@ lidar_scan_t CloudScans::HeadOf(const std::vector<Beam>& beams, const CloudColum
   return scan;
 }
 
-// The nearest return of each cell.
+// Two points of one ring and one shot: in one direction at one time. Others of the ring are a column apart, or a turn. A band holds several rings, so
+// there the elevation counts, too.
+bool CloudScans::IsOneShot(const RingPoint& one, const RingPoint& other) const {
+  constexpr double kSameDirectionRad = 1e-4;
+  constexpr std::int64_t kSameTimeNs = 1000;
+  if (std::abs(WrapToPi(one.azimuth_rad - other.azimuth_rad)) > kSameDirectionRad || std::abs(one.time_ns - other.time_ns) > kSameTimeNs)
+    return false;
+  return has_rings_ || std::abs(Atan2(one.z_m, one.level_m) - Atan2(other.z_m, other.level_m)) <= kSameDirectionRad;
+}
+
+// The nearest point of each cell, and where the cloud has two returns of a shot the next one of the same shot.
+CloudScans::CellPoints CloudScans::SortIntoCells(const RingCloud& cloud, const std::vector<std::size_t>& cell_of_point,
+                                                 const std::vector<double>& ranges_m, std::size_t num_cells) {
+  constexpr std::int64_t kLeastSecondReturns = 8;
+  CellPoints cells;
+  cells.first.assign(num_cells, kNoPoint);
+  const auto is_nearer = [&](std::size_t point, std::int32_t than) {
+    return than == kNoPoint || ranges_m[point] < ranges_m[static_cast<std::size_t>(than)];
+  };
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    auto& first = cells.first[cell_of_point[i]];
+    if (is_nearer(i, first)) first = static_cast<std::int32_t>(i);
+  }
+  cells.second.assign(num_cells, kNoPoint);
+  std::int64_t num_beside = 0;
+  std::int64_t num_of_shot = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const auto first = static_cast<std::size_t>(cells.first[cell_of_point[i]]);
+    if (first == i) continue;
+    ++num_beside;
+    if (!IsOneShot(cloud.points[first], cloud.points[i])) continue;
+    ++num_of_shot;
+    auto& second = cells.second[cell_of_point[i]];
+    if (is_nearer(i, second)) second = static_cast<std::int32_t>(i);
+  }
+  // A turn that ends over its beginning meets a direction again by chance, and of a grid some points share a cell.
+  const bool has_second =
+      num_of_shot >= kLeastSecondReturns && 2 * num_of_shot > num_beside && 2 * std::ssize(cells.first) <= messages::kMaxScanCells;
+  if (!has_second) cells.second.clear();
+  counts_.num_hidden += num_beside - (has_second ? std::ranges::count_if(cells.second, [](std::int32_t point) { return point != kNoPoint; }) : 0);
+  return cells;
+}
+
 void CloudScans::FillCells(const RingCloud& cloud, const std::vector<Beam>& beams, const CloudColumns& columns, lidar_scan_t& scan) {
   const auto places = PlacesOf(beams);
-  const auto place_of = [&](const RingPoint& point) { return static_cast<std::size_t>(places[static_cast<std::size_t>(point.ring)]); };
   double farthest_m = 0.0;
   std::vector<double> ranges_m;
   ranges_m.reserve(cloud.points.size());
-  for (const auto& point : cloud.points) {
-    ranges_m.push_back(Hypot(point.level_m, point.z_m - beams[place_of(point)].origin_height_m));
-    farthest_m = std::max(farthest_m, ranges_m.back());
-  }
-  scan.range_unit_m = RangeUnitFor(farthest_m);
-  const auto num_cells = columns.azimuth_rad.size() * beams.size();
-  scan.range.assign(num_cells, 0);
-  scan.reflectivity.assign(num_cells, 0);
+  std::vector<std::size_t> cell_of_point;
+  cell_of_point.reserve(cloud.points.size());
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const auto& point = cloud.points[i];
-    const auto cell = static_cast<std::size_t>(columns.column_of_point[i]) * beams.size() + place_of(point);
+    const auto place = static_cast<std::size_t>(places[static_cast<std::size_t>(point.ring)]);
+    ranges_m.push_back(Hypot(point.level_m, point.z_m - beams[place].origin_height_m));
+    farthest_m = std::max(farthest_m, ranges_m.back());
+    cell_of_point.push_back(static_cast<std::size_t>(columns.column_of_point[i]) * beams.size() + place);
+  }
+  scan.range_unit_m = RangeUnitFor(farthest_m);
+  const auto num_shots = columns.azimuth_rad.size() * beams.size();
+  const auto cells = SortIntoCells(cloud, cell_of_point, ranges_m, num_shots);
+  const std::size_t num_returns = cells.second.empty() ? 1 : 2;
+  if (num_returns == 2) {
+    // The farther one of two came last. Which one is the stronger no cloud says.
+    scan.return_kind = {lidar_scan_t::RETURN_STRONGEST, lidar_scan_t::RETURN_LAST};
+    scan.num_returns = 2;
+    has_second_returns_ = true;
+  }
+  scan.range.assign(num_shots * num_returns, 0);
+  scan.reflectivity.assign(num_shots * num_returns, 0);
+  cell_labels_.assign(cloud.has_labels ? num_shots * num_returns : 0, 0);
+  const auto put = [&](std::int32_t of_cell, std::size_t cell) {
+    if (of_cell == kNoPoint) return;
+    const auto i = static_cast<std::size_t>(of_cell);
     const auto count = static_cast<std::uint16_t>(std::clamp(std::round(ranges_m[i] / scan.range_unit_m), 1.0, kMaxCloudCount));
-    const auto before = std::bit_cast<std::uint16_t>(scan.range[cell]);
-    if (before != 0) ++counts_.num_hidden;
-    if (before != 0 && before <= count) continue;
     scan.range[cell] = std::bit_cast<std::int16_t>(count);
-    scan.reflectivity[cell] = point.reflectivity;
+    scan.reflectivity[cell] = cloud.points[i].reflectivity;
+    if (cloud.has_labels) cell_labels_[cell] = cloud.points[i].label;
+  };
+  for (std::size_t shot = 0; shot < num_shots; ++shot) {
+    put(cells.first[shot], shot * num_returns);
+    if (num_returns == 2) put(cells.second[shot], shot * num_returns + 1);
   }
 }
 
@@ -313,6 +370,9 @@ std::vector<std::string> CloudScans::Remarks() const {
                       " clouds have times of points that are more than a second apart, or are none: each of their scans has one time");
   }
   if (is_clock_other_) remarks.emplace_back("the times of points are of another clock than the cloud's: only their differences are used");
+  if (has_second_returns_) {
+    remarks.emplace_back("there are clouds with two returns of a shot: the nearer one stands as the strongest, the farther one as the last");
+  }
   if (!has_reflectivity_) remarks.emplace_back("the clouds have no reflectivity: it is 0");
   if (counts_.num_refused > 0) remarks.push_back(std::to_string(counts_.num_refused) + " clouds give no scan; the last one " + last_refusal_);
   return remarks;

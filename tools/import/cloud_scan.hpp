@@ -20,7 +20,7 @@ struct CloudCounts {
   std::int64_t num_empty = 0;          // no return
   std::int64_t num_out_of_range = 0;   // RingCloud; or above or below the bands
   std::int64_t num_no_time = 0;        // RingCloud; of clouds whose times are used
-  std::int64_t num_hidden = 0;         // another point of the same ring and firing is nearer: second returns, or the end of a turn over its begin
+  std::int64_t num_hidden = 0;         // another point of the same ring and firing is nearer: third returns, or the end of a turn over its begin
   std::int64_t num_no_ring = 0;        // of a ring that is not known: fewer than kMinRingPoints so far
   std::int64_t num_refused = 0;        // clouds: no fields x y z, or more columns and rings than a scan may have
   std::int64_t num_times_refused = 0;  // clouds: RingCloud::are_times_refused
@@ -42,6 +42,9 @@ class CloudScans {
   /// neither
   ///         firing nor place; a range is rounded to a unit of 2 mm, or as much as the farthest point needs
   std::vector<lidar_scan_t> Convert(const RosPointCloud& cloud, std::int64_t stamp_ns, const std::string& model);
+
+  /// Labels of the cells of the last scan: of all its parts, in their order; without any where its cloud had none.
+  const std::vector<std::uint32_t>& cell_labels() const { return cell_labels_; }
 
   const CloudCounts& counts() const { return counts_; }
   /// What the clouds lack or how they are read, in words, for people and RUN_INFO.
@@ -74,6 +77,15 @@ class CloudScans {
   std::vector<Beam> SortIntoBeams(RingCloud& cloud);
   static std::array<std::int32_t, kMaxImportRings> PlacesOf(const std::vector<Beam>& beams);
   static lidar_scan_t HeadOf(const std::vector<Beam>& beams, const CloudColumns& columns, std::int64_t stamp_ns);
+  // [shots] places of points in the cloud; `second` is empty where the cloud has one return of a shot.
+  static constexpr std::int32_t kNoPoint = -1;
+  struct CellPoints {
+    std::vector<std::int32_t> first;
+    std::vector<std::int32_t> second;
+  };
+  bool IsOneShot(const RingPoint& one, const RingPoint& other) const;
+  CellPoints SortIntoCells(const RingCloud& cloud, const std::vector<std::size_t>& cell_of_point, const std::vector<double>& ranges_m,
+                           std::size_t num_cells);
   void FillCells(const RingCloud& cloud, const std::vector<Beam>& beams, const CloudColumns& columns, lidar_scan_t& scan);
   std::vector<lidar_scan_t> Refuse(std::string reason);
 
@@ -84,10 +96,12 @@ class CloudScans {
   bool is_settled_ = false;
   std::int64_t next_seq_ = 0;
   CloudCounts counts_;
+  std::vector<std::uint32_t> cell_labels_;
   std::string last_refusal_;
   bool has_times_ = true;
   bool has_rings_ = true;
   bool has_reflectivity_ = true;
+  bool has_second_returns_ = false;
   bool is_clock_other_ = false;
 };
 

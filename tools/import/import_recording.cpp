@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <ostream>
 #include <stdexcept>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "services/lidar/params.hpp"
 #include "tools/import/log_maker.hpp"
 #include "tools/import/ros_import.hpp"
+#include "tools/import/truth_files.hpp"
 
 namespace lookout::importer {
 
@@ -25,7 +27,7 @@ namespace fs = std::filesystem;
 
 std::unique_ptr<Recording> OpenKnown(const fs::path& file) {
   auto recording = OpenRecording(file);
-  if (!recording) throw std::runtime_error(file.string() + ": is no ROS bag, recording of rosbag2 or MCAP file");
+  if (!recording) throw std::runtime_error(file.string() + ": is no ROS bag, recording of rosbag2, MCAP file or folder of scans");
   return recording;
 }
 
@@ -74,6 +76,7 @@ class RecordingReader {
     add(losses.num_damaged, "damaged places");
     add(losses.num_bytes_skipped, "bytes skipped");
     add(losses.num_bad_messages, "messages of no known topic or time");
+    add(losses.num_foreign, "files that are not of it");
     if (losses.is_cut) text += " it ends before its end;";
     if (!losses.first_fault.empty()) text += " the first: " + PrintableLines(losses.first_fault);
     notes_ << "lookout-import: " << text << '\n';
@@ -118,9 +121,39 @@ bool IsUsed(const TopicMap& map, std::initializer_list<Use> uses) {
   return std::ranges::any_of(map, [&](const auto& topic) { return std::ranges::find(uses, topic.second.use) != uses.end(); });
 }
 
+// @return nullptr where none is wanted
+std::unique_ptr<TruthFiles> OpenTruth(const RecordingRequest& request, std::ostream& notes) {
+  if (!request.truth_folder) return nullptr;
+  std::string text;
+  for (const auto& file : request.files) {
+    if (text.empty()) text = OpenKnown(file)->default_labels();
+  }
+  std::string name = "labels";
+  if (request.label_map_file) {
+    name = request.label_map_file->string();
+    text = config::ReadConfigFile(*request.label_map_file);
+  } else if (text.empty()) {
+    throw std::runtime_error("--truth: what the labels mean is not known here: give a file with their meaning as --labels");
+  } else {
+    notes << "lookout-import: what labels mean; to change it, keep these lines in a file, edit it and give it as --labels\n" << text;
+  }
+  return std::make_unique<TruthFiles>(*request.truth_folder, ParseLabelMap(text, name), request.force);
+}
+
+void FinishTruth(const RecordingRequest& request, TruthFiles& truth, std::ostream& notes) {
+  if (truth.num_scans() == 0) throw std::runtime_error(request.files.front().string() + ": no scan has labels for --truth");
+  truth.Finish();
+  notes << fmt::format("lookout-import: truth: {} scans, {} objects", truth.num_scans(), truth.num_objects());
+  if (truth.num_unknown() > 0) notes << fmt::format(", {} returns of classes whose meaning is not given, taken for none", truth.num_unknown());
+  notes << '\n';
+}
+
 std::string FileNames(const std::vector<fs::path>& files) {
   std::string text;
-  for (const auto& file : files) text += "imported from " + PrintableLines(file.filename().string()) + "\n";
+  for (const auto& file : files) {
+    const auto plain = fs::absolute(file).lexically_normal();  // of a folder "x/" and "." the name, too
+    text += "imported from " + PrintableLines((plain.has_filename() ? plain : plain.parent_path()).filename().string()) + "\n";
+  }
   return text;
 }
 
@@ -174,6 +207,7 @@ bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, st
   const auto map_text = TopicMapText(topics, map);
   notes << (request.topic_map_file ? "" : "lookout-import: guessed; to change it, keep these lines in a file, edit it and give it as --topics\n")
         << map_text;
+  auto truth = OpenTruth(request, notes);
   const auto params = lidar::LoadParams(request.config_folder);
   auto run_info = runtime::MakeRunInfo("import", request.config_folder);
   run_info.file_name.emplace_back("lookout-import");
@@ -185,18 +219,22 @@ bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, st
     ++run_info.seq;
   };
   std::optional<Utime> last;
-  const bool has_navigation = IsUsed(map, {Use::kImu, Use::kImuFlu, Use::kSentences, Use::kFix, Use::kVelocity});
+  const bool has_navigation = IsUsed(map, {Use::kImu, Use::kImuFlu, Use::kSentences, Use::kFix, Use::kVelocity, Use::kOxts});
   LogMaker log(params, has_navigation, [&](Utime time, const bus::Channel& channel, Bytes bytes) {
     if (!last) write_run_info(time);
     last = time;
     output.Write(time, channel.name, bytes);
   });
-  RosImport import(map, log);
+  RosImport import(map, log, truth.get());
   for (const auto& file : request.files) import.Learn(*OpenKnown(file));
   const bool is_whole = RecordingReader(request.files, notes).ForEach([&](const RecordedMessage& message) { import.Take(message); });
   log.Finish();
-  const auto lines = ResultLines(import, log);
+  auto lines = ResultLines(import, log);
+  for (const auto& file : request.files) {
+    for (auto& remark : OpenKnown(file)->remarks()) lines.push_back(std::move(remark));
+  }
   for (const auto& line : lines) notes << "lookout-import: " << line << '\n';
+  if (truth && last) FinishTruth(request, *truth, notes);
   if (!last) {
     const auto kind = OpenKnown(request.files.front())->kind();
     throw std::runtime_error(request.files.front().string() + ": is a " + kind + " that holds nothing that is imported");

@@ -17,6 +17,9 @@ struct RecordingRequest {
   std::filesystem::path config_folder;
   std::vector<std::filesystem::path> files;  // of one recording, in their order
   std::optional<std::filesystem::path> topic_map_file;
+  std::optional<std::filesystem::path> truth_folder = std::nullopt;
+  std::optional<std::filesystem::path> label_map_file = std::nullopt;
+  bool force = false;
 };
 
 /// Topics of all files together. Where a file has no index, all of it is read.

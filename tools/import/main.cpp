@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -39,6 +40,8 @@ struct Options {
   std::vector<fs::path> inputs;
   fs::path output;
   fs::path topic_map;
+  fs::path truth;
+  fs::path labels;
   bool lists = false;
   bool force = false;
 };
@@ -47,13 +50,15 @@ struct Options {
 Options ParseOptions(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "Makes an lcm-log of a recording of others: ROS 1 bags, rosbag2 (SQLite, MCAP), MCAP files, and lidar detections of the Autoferry data set "
+      "Makes an lcm-log of a recording of others: ROS 1 bags, rosbag2 (SQLite, MCAP), MCAP files, folders of scans (PCD, KITTI), and lidar "
+      "detections of the Autoferry data set "
       "(scenarioN_lidar_detections.json).",
       "lookout-import");
   app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files, for RUN_INFO and the lidar's ports")
       ->check(CLI::ExistingDirectory)
       ->check(lookout::config::BoatFolderFault);
-  app.add_option("--in", options.inputs, "recording, or folder of a rosbag2; may be given several times: the parts of one recording, in this order")
+  app.add_option("--in", options.inputs,
+                 "recording, or folder of a rosbag2 or of scans; may be given several times: the parts of one recording, in this order")
       ->required()
       ->allow_extra_args(false)
       ->check(CLI::ExistingPath);
@@ -61,8 +66,12 @@ Options ParseOptions(int argc, char** argv) {
   app.add_option("--topics", options.topic_map,
                  "text file, a line for each topic: TOPIC USE [time=auto|stamp|recorded]; without it they are guessed. Uses: " + importer::UseWords())
       ->check(CLI::ExistingFile);
+  auto* truth = app.add_option("--truth", options.truth, "write the labels of the scans to this folder, as lookout-eval --truth reads them");
+  app.add_option("--labels", options.labels, "text file, a line for each class of labels: CLASS water|land|obstacle|none [NAME]")
+      ->check(CLI::ExistingFile)
+      ->needs(truth);
   app.add_flag("--list", options.lists, "print the topics and what they would become, as a file for --topics, and exit");
-  app.add_flag("--force", options.force, "replace an existing --out");
+  app.add_flag("--force", options.force, "replace an existing --out, and files of --truth");
   app.set_version_flag("--version", "lookout-import " + runtime::Version());
   app.footer("Exit code: 0 done; 1 failed; 2 wrong command line or config; 3 the log is written, but the recording is damaged.");
   try {
@@ -103,6 +112,7 @@ void ImportDetections(const Options& options, const fs::path& input, log::LogOut
 }
 
 bool IsRecording(const fs::path& file) {
+  if (fs::is_directory(file)) return true;
   const auto kind = io::FileKindOf(file);
   return kind == io::FileKind::kRosBag || kind == io::FileKind::kMcap || kind == io::FileKind::kSqlite;
 }
@@ -114,12 +124,13 @@ int Import(const Options& options) {
     for (auto& file : importer::FilesOfRecording(input)) files.push_back(std::move(file));
   }
   for (const auto& file : files) {
+    if (fs::is_directory(file)) continue;  // of scans
     if (const auto reason = io::WhyNot(file, io::Wanted::kImport); !reason.empty()) throw std::runtime_error(reason);
   }
   const bool is_recording = IsRecording(files.front());
   if (!is_recording && !importer::IsFerryScans(files.front())) {
     throw std::runtime_error(files.front().string() +
-                             ": is no recording that is known here: ROS bag, rosbag2, MCAP, or lidar detections of Autoferry "
+                             ": is no recording that is known here: ROS bag, rosbag2, MCAP, folder of scans, or lidar detections of Autoferry "
                              "(scenarioN_lidar_detections.json)");
   }
   if (options.lists) {
@@ -129,16 +140,21 @@ int Import(const Options& options) {
     return EXIT_SUCCESS;
   }
   auto inputs = io::FilesIn(options.config_folder);
-  inputs.insert(inputs.end(), files.begin(), files.end());
+  for (const auto& file : files) {
+    if (!fs::is_directory(file)) inputs.push_back(file);
+    if (fs::is_directory(file)) std::ranges::move(io::FilesIn(file), std::back_inserter(inputs));
+  }
   log::LogOutput output(options.output, {.force = options.force, .inputs = std::move(inputs), .tell = [](const std::string& line) {
                                            std::cerr << "lookout-import: " << line << '\n';
                                          }});
   if (!is_recording) {
+    if (!options.truth.empty()) throw std::runtime_error(files.front().string() + ": has no labels");
     ImportDetections(options, files.front(), output);
     return EXIT_SUCCESS;
   }
-  const auto topic_map = options.topic_map.empty() ? std::nullopt : std::optional(options.topic_map);
-  const bool is_whole = importer::ImportRecording({options.config_folder, files, topic_map}, output, std::cerr);
+  const auto given = [](const fs::path& path) { return path.empty() ? std::nullopt : std::optional(path); };
+  const bool is_whole = importer::ImportRecording(
+      {options.config_folder, files, given(options.topic_map), given(options.truth), given(options.labels), options.force}, output, std::cerr);
   output.Commit();
   return is_whole ? EXIT_SUCCESS : kExitDamaged;
 }

@@ -9,6 +9,7 @@
 
 #include "common/core/printable.hpp"
 #include "tools/import/byte_source.hpp"
+#include "tools/import/folder_recording.hpp"
 #include "tools/import/mcap_file.hpp"
 #include "tools/import/ros_bag.hpp"
 #include "tools/import/rosbag2_database.hpp"
@@ -33,6 +34,16 @@ void Losses::Damage(std::uint64_t offset, const std::string& reason) {
   if (first_fault.empty()) first_fault = "byte " + std::to_string(offset) + ": " + reason;
 }
 
+void Losses::DamageFile(const std::string& reason) {
+  ++num_damaged;
+  if (first_fault.empty()) first_fault = reason;
+}
+
+void Losses::BadMessage(const std::string& reason) {
+  ++num_bad_messages;
+  if (first_fault.empty()) first_fault = reason;
+}
+
 std::string PlainTypeName(std::string type) {
   const auto place = type.find("/msg/");
   if (place != std::string::npos) type.erase(place, 4);
@@ -40,6 +51,7 @@ std::string PlainTypeName(std::string type) {
 }
 
 std::unique_ptr<Recording> OpenRecording(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) return std::make_unique<FolderRecording>(file);
   auto source = std::make_unique<FileSource>(file);
   std::array<std::uint8_t, 16> head{};
   const auto bytes = Bytes(head).first(source->Read(0, head));
@@ -59,11 +71,14 @@ std::vector<std::filesystem::path> FilesOfRecording(const std::filesystem::path&
     has_packed = has_packed || extension == ".zstd";
   }
   // compression_mode: file
+  if (files.empty() && FolderRecording::IsLayout(path)) return {path};
   if (files.empty() && has_packed) {
     throw std::runtime_error(PrintableLines(path.string()) +
                              ": is a folder with files that are packed as a whole; unpack them first: zstd -d *.zstd");
   }
-  if (files.empty()) throw std::runtime_error(PrintableLines(path.string()) + ": is a folder without a recording of rosbag2 (*.db3, *.mcap)");
+  if (files.empty())
+    throw std::runtime_error(PrintableLines(path.string()) +
+                             ": is a folder without a recording that is known here: rosbag2 (*.db3, *.mcap), *.pcd, *.bin of KITTI");
   std::ranges::sort(files, {}, [](const auto& file) { return std::pair(NumberOfFile(file), file.string()); });
   return files;
 }

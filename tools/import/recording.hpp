@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/core/bytes.hpp"
@@ -15,7 +16,7 @@
 namespace lookout::importer {
 
 /// How the bytes of a message are laid out.
-enum class Encoding { kRos1, kCdr, kLcm, kOther };
+enum class Encoding { kRos1, kCdr, kLcm, kText, kOther };
 
 struct Topic {
   std::string name;
@@ -41,11 +42,15 @@ struct Losses {
   std::int64_t num_damaged = 0;        // stretches, chunks or records that could not be read
   std::int64_t num_bytes_skipped = 0;  // of the file, where another chunk was looked for, or a record is too large to be read
   std::int64_t num_bad_messages = 0;   // of no topic that is known, or at an impossible time
+  std::int64_t num_foreign = 0;        // files of a folder that are not of its recording
   bool is_cut = false;                 // the file ends before its end mark
   std::string first_fault;             // in words, with the place
 
-  bool IsAny() const { return num_damaged > 0 || num_bad_messages > 0 || is_cut; }
+  bool IsAny() const { return num_damaged > 0 || num_bad_messages > 0 || num_foreign > 0 || is_cut; }
   void Damage(std::uint64_t offset, const std::string& reason);
+  /// Of a folder. @param reason  with the file
+  void DamageFile(const std::string& reason);
+  void BadMessage(const std::string& reason);
 };
 
 class Recording {
@@ -71,6 +76,12 @@ class Recording {
 
   /// How far it is read, 0 to 1.
   virtual double share() const = 0;
+
+  /// What it lacks or how it is read, in words, for people and RUN_INFO.
+  virtual std::vector<std::string> remarks() const { return {}; }
+
+  /// What the labels of its points mean (ParseLabelMap); empty where it has none.
+  virtual std::string_view default_labels() const { return {}; }
 };
 
 /// Longest text of a name or type that is taken, so that a damaged length does not become a topic.
@@ -82,13 +93,14 @@ inline constexpr std::size_t kMaxTopics = 10'000;
 /// "sensor_msgs/msg/Imu" and "sensor_msgs/Imu" are one type.
 std::string PlainTypeName(std::string type);
 
-/// Opens a ROS bag, MCAP file or database of rosbag2.
+/// Opens a ROS bag, MCAP file, database of rosbag2, or a folder of scans.
 ///
 /// @return nullptr when it is none of these
 /// @throws std::runtime_error when it cannot be opened
 std::unique_ptr<Recording> OpenRecording(const std::filesystem::path& file);
 
-/// The files of a folder that rosbag2 has written (name_0.db3, name_1.db3, ...; .mcap), in their order; of any other path itself.
+/// The files of a folder that rosbag2 has written (name_0.db3, name_1.db3, ...; .mcap), in their order; of any other path, and of a folder of scans,
+/// itself.
 /// @throws std::runtime_error when a folder holds none
 std::vector<std::filesystem::path> FilesOfRecording(const std::filesystem::path& path);
 

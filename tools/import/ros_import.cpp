@@ -6,6 +6,7 @@
 
 #include "common/bus/decode.hpp"
 #include "services/navigator/core/lines.hpp"
+#include "tools/import/oxts.hpp"
 #include "tools/import/ros_message.hpp"
 #include "tools/import/ros_sentences.hpp"
 
@@ -18,6 +19,12 @@ std::optional<Utime> UtimeOfNs(std::int64_t time_ns) { return UtimeFromWire(time
 bool IsNear(std::int64_t one_ns, std::int64_t other_ns) {
   std::int64_t off_ns = 0;
   return !__builtin_sub_overflow(one_ns, other_ns, &off_ns) && off_ns >= -kMaxStampOffNs && off_ns <= kMaxStampOffNs;
+}
+
+// Of a scan, which does not name its sensor.
+std::string ModelOf(const std::string& type) {
+  if (type == kTypePcd) return "PCD";
+  return type == kTypeKittiPoints ? "KITTI" : "PointCloud2";
 }
 
 // rad/s and m/s2: what NAV_RAW takes.
@@ -76,6 +83,9 @@ void RosImport::Take(const RecordedMessage& message) {
     case Use::kVelocity:
       TakeVelocity(message, use.time, tally);
       break;
+    case Use::kOxts:
+      TakeOxts(message, tally);
+      break;
     case Use::kNone:
       break;
   }
@@ -85,7 +95,7 @@ void RosImport::Take(const RecordedMessage& message) {
 std::optional<std::int64_t> RosImport::TimeNsOf(const RecordedMessage& message, std::int64_t stamp_ns, TimeBasis basis, TopicTally& tally) {
   bool uses_stamp = basis == TimeBasis::kStamp;
   if (basis == TimeBasis::kAuto) {
-    uses_stamp = stamp_ns != 0 && IsNear(stamp_ns, message.time_ns);
+    uses_stamp = (stamp_ns != 0 || message.time_ns == 0) && IsNear(stamp_ns, message.time_ns);
     tally.num_other_time += uses_stamp ? 0 : 1;
   }
   const auto time_ns = uses_stamp ? stamp_ns : message.time_ns;
@@ -132,8 +142,9 @@ void RosImport::TakeCloud(const RecordedMessage& message, TimeBasis basis, Topic
   }
   const auto time_ns = TimeNsOf(message, cloud->header.stamp_ns, basis, tally);
   if (!time_ns) return;
-  const auto parts = clouds_.Convert(*cloud, *time_ns, "PointCloud2");
+  const auto parts = clouds_.Convert(*cloud, *time_ns, ModelOf(message.topic->type));
   ++(parts.empty() ? tally.num_empty : tally.num_used);
+  if (truth_ != nullptr) truth_->Add(parts, clouds_.cell_labels());
   for (const auto& part : parts) {
     ImportItem item;
     item.kind = ImportItem::Kind::kScanPart;
@@ -224,6 +235,23 @@ void RosImport::TakeVelocity(const RecordedMessage& message, TimeBasis basis, To
   auto sentence = VtgOf(*twist);
   ++(sentence.empty() ? tally.num_empty : tally.num_used);
   if (!sentence.empty()) AddSentence(time, message.topic->name, std::move(sentence), tally);
+}
+
+void RosImport::TakeOxts(const RecordedMessage& message, TopicTally& tally) {
+  const auto time = UtimeOfNs(message.time_ns);
+  auto items = time ? ParseOxts({reinterpret_cast<const char*>(message.bytes.data()), message.bytes.size()}, *time) : std::nullopt;
+  if (!items) {
+    ++tally.num_refused;
+    return;
+  }
+  ++tally.num_used;
+  for (auto& sentence : items->sentences) AddSentence(*time, message.topic->name, std::move(sentence), tally);
+  if (!items->imu) return;
+  ImportItem item;
+  item.kind = ImportItem::Kind::kImu;
+  item.source = SourceOf(message.topic->name);
+  item.imu = *items->imu;
+  log_.Add(*time, std::move(item));
 }
 
 }  // namespace lookout::importer

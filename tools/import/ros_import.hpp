@@ -10,6 +10,7 @@
 #include "tools/import/log_maker.hpp"
 #include "tools/import/recording.hpp"
 #include "tools/import/topic_map.hpp"
+#include "tools/import/truth_files.hpp"
 
 namespace lookout::importer {
 
@@ -24,7 +25,8 @@ struct TopicTally {
 
 class RosImport {
  public:
-  RosImport(TopicMap map, LogMaker& log) : map_(std::move(map)), log_(log) {}
+  /// @param truth  takes the labels of clouds; nullptr: nobody does
+  RosImport(TopicMap map, LogMaker& log, TruthFiles* truth = nullptr) : map_(std::move(map)), log_(log), truth_(truth) {}
 
   /// Shows the beginning of a recording, to learn the beams of a lidar whose clouds are imported.
   void Learn(Recording& recording);
@@ -45,10 +47,12 @@ class RosImport {
   void TakeSentence(const RecordedMessage& message, TimeBasis basis, TopicTally& tally);
   void TakeFix(const RecordedMessage& message, TimeBasis basis, TopicTally& tally);
   void TakeVelocity(const RecordedMessage& message, TimeBasis basis, TopicTally& tally);
+  void TakeOxts(const RecordedMessage& message, TopicTally& tally);
   void AddSentence(Utime time, const std::string& topic, std::string sentence, TopicTally& tally);
 
   TopicMap map_;
   LogMaker& log_;
+  TruthFiles* truth_;
   CloudScans clouds_;
   std::map<std::string, TopicTally> tallies_;
 };

@@ -88,6 +88,10 @@ inline constexpr std::uint64_t kMaxRosPoints = std::uint64_t{1} << 21;
 /// The words that Parse... know; of what is of another type they must not be asked.
 inline constexpr std::string_view kTypeVelodyneScan = "velodyne_msgs/VelodyneScan";
 inline constexpr std::string_view kTypePointCloud = "sensor_msgs/PointCloud2";
+/// Of files, as sensor_msgs/PointCloud2 (point_message.hpp).
+inline constexpr std::string_view kTypePcd = "pcl/PCD";
+inline constexpr std::string_view kTypeKittiPoints = "kitti/Points";
+inline constexpr std::string_view kTypeOxts = "kitti/Oxts";
 inline constexpr std::string_view kTypeImu = "sensor_msgs/Imu";
 inline constexpr std::string_view kTypeNavSatFix = "sensor_msgs/NavSatFix";
 inline constexpr std::string_view kTypeSentence = "nmea_msgs/Sentence";

@@ -72,4 +72,9 @@ std::string VtgOf(const RosTwist& twist) {
   return WithChecksum(fmt::format("GPVTG,{},T,,M,{:.5f},N,{:.5f},K,A", course, speed_mps * 3600.0 / 1852.0, speed_mps * 3.6));
 }
 
+std::string PashrSentence(double heading_rad, double roll_rad, double pitch_rad, Utime time) {
+  return WithChecksum(fmt::format("PASHR,{},{:.4f},T,{:+.4f},{:+.4f},,,,,", SentenceTime(time), std::min(RadToDeg(heading_rad), 359.9999),
+                                  RadToDeg(roll_rad), RadToDeg(pitch_rad)));
+}
+
 }  // namespace lookout::importer

@@ -21,4 +21,7 @@ std::string GstOf(const RosNavSatFix& fix, Utime time);
 /// VTG. The velocity is along east and north, as drivers of receivers give it. @return empty where it is not finite or beyond 100 m/s
 std::string VtgOf(const RosTwist& twist);
 
+/// PASHR, without accuracies. Precondition: finite; heading in [0, 2 pi), clockwise from north; roll positive starboard down, pitch positive bow up
+std::string PashrSentence(double heading_rad, double roll_rad, double pitch_rad, Utime time);
+
 }  // namespace lookout::importer

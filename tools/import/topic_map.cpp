@@ -20,21 +20,24 @@ namespace {
 struct UseRow {
   Use use;
   std::string_view word;
-  std::array<std::string_view, 2> types;  // of messages
+  std::array<std::string_view, 3> types;  // of messages
 };
 
 constexpr std::array kUseRows{UseRow{Use::kNone, "none", {}},
                               UseRow{Use::kLidarPackets, "lidar_packets", {kTypeVelodyneScan}},
-                              UseRow{Use::kLidarScan, "lidar_scan", {kTypePointCloud}},
+                              UseRow{Use::kLidarScan, "lidar_scan", {kTypePointCloud, kTypePcd, kTypeKittiPoints}},
                               UseRow{Use::kImu, "imu", {kTypeImu}},
                               UseRow{Use::kImuFlu, "imu_flu", {kTypeImu}},
                               UseRow{Use::kSentences, "sentences", {kTypeSentence, kTypeString}},
                               UseRow{Use::kFix, "fix", {kTypeNavSatFix}},
-                              UseRow{Use::kVelocity, "velocity", {kTypeTwist, kTypeTwistWithCovariance}}};
+                              UseRow{Use::kVelocity, "velocity", {kTypeTwist, kTypeTwistWithCovariance}},
+                              UseRow{Use::kOxts, "oxts", {kTypeOxts}}};
 
 const UseRow& RowOf(Use use) { return *std::ranges::find(kUseRows, use, &UseRow::use); }
 
-bool IsReadable(const Topic& topic) { return topic.encoding == Encoding::kRos1 || topic.encoding == Encoding::kCdr; }
+bool IsReadable(const Topic& topic) {
+  return topic.encoding == Encoding::kRos1 || topic.encoding == Encoding::kCdr || topic.encoding == Encoding::kText;
+}
 
 bool Fits(const UseRow& row, const Topic& topic) {
   return row.use == Use::kNone || (IsReadable(topic) && !topic.type.empty() && std::ranges::find(row.types, topic.type) != row.types.end());
@@ -107,6 +110,7 @@ TopicMap GuessTopics(const Topics& topics) {
              {"camera", -3},
              {"zed", -3}}),
        Use::kImuFlu);
+  take(Best(by_name, Use::kOxts, 0, {}), Use::kOxts);
   bool has_sentences = false;
   for (const auto& [name, topic] : by_name) {
     if (topic.type == kTypeSentence && topic.num_messages != 0 && IsReadable(topic)) has_sentences = take(&topic, Use::kSentences);

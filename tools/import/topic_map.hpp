@@ -11,7 +11,7 @@
 
 namespace lookout::importer {
 
-enum class Use { kNone, kLidarPackets, kLidarScan, kImu, kImuFlu, kSentences, kFix, kVelocity };
+enum class Use { kNone, kLidarPackets, kLidarScan, kImu, kImuFlu, kSentences, kFix, kVelocity, kOxts };
 
 /// Whose time a message has: the stamp in it where that is within kMaxStampOffNs of the recording's, else the recording's; or always one of them.
 enum class TimeBasis { kAuto, kStamp, kRecorded };

@@ -108,7 +108,7 @@ void TruthMatch::Add(const pose_t& pose) {
 void TruthMatch::MatchByTime(const lidar_scan_t& scan, ReturnMatch& match) const {
   exporter::ForEachReturn(scan, nullptr, [&](const exporter::Return& seen) {
     ++match.num_returns;
-    const auto* const made = truth_.Find(seen.utime_us, seen.ring, seen.return_index);
+    const auto* const made = truth_.Find(seen.utime_us, seen.ring, seen.return_index, scan.first_column + seen.column);
     if (made == nullptr) return;
     ++match.num_found;
     const bool knows_place = made->p_lidar_m.allFinite();

@@ -25,6 +25,24 @@ TEST(Truth, FindsReturnsWithinAMicrosecondByRingAndReturn) {
   EXPECT_EQ(object_of(kStartUs + 55, 0, 0), 2);
 }
 
+// Of clouds without times all returns of a ring are of one time.
+TEST(Truth, FindsReturnsOfOneTimeByTheirColumn) {
+  const support::TempDir folder;
+  WriteTruth(folder);
+  WriteFile(folder / "returns.csv", "utime_us,ring,return_index,object_id,column\n5,0,0,1,0\n5,1,0,2,0\n5,0,0,3,1\n5,0,1,4,1\n");
+  const Truth truth(folder);
+  const auto object_of = [&truth](std::int64_t utime_us, int ring, int return_index, int column) {
+    const auto* found = truth.Find(utime_us, ring, return_index, column);
+    return found != nullptr ? found->object_id : -9;
+  };
+  EXPECT_EQ(object_of(5, 0, 0, 0), 1);
+  EXPECT_EQ(object_of(5, 1, 0, 0), 2);
+  EXPECT_EQ(object_of(6, 0, 0, 1), 3);
+  EXPECT_EQ(object_of(4, 0, 1, 1), 4);
+  EXPECT_EQ(object_of(7, 0, 0, 1), -9);
+  EXPECT_EQ(object_of(5, 1, 0, 1), -9);
+}
+
 TEST(Truth, OutlineOfAMovingObjectLiesBetweenItsSamples) {
   const support::TempDir folder;
   WriteTruth(folder);

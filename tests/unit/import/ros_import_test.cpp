@@ -1,6 +1,7 @@
 // What becomes of messages of ROS.
 #include "tools/import/ros_import.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -445,6 +446,80 @@ TEST(CloudScans, WithoutRingsAndTimesSayWhatTheyLack) {
   EXPECT_EQ(scans.Remarks().size(), 3U);
   EXPECT_GE(parts[0].num_rings, MadeTurn::kNumRings);
   EXPECT_LE(scans.counts().num_hidden, 12);
+}
+
+// A turn of 4 rings and 360 columns with times, and a second return of every tenth shot, 5 m behind the first.
+Payload MakeDualTurn(bool has_times, bool is_same_direction) {
+  Writer data;
+  std::uint32_t num_points = 0;
+  const auto put = [&](int column, int ring, double range_m, double off_rad) {
+    const double elevation_rad = DegToRad(2.0 * ring - 3.0);
+    const double azimuth_rad = kTwoPi * column / 360 + off_rad;
+    data.Number(static_cast<float>(range_m * std::cos(elevation_rad) * std::cos(azimuth_rad)));
+    data.Number(static_cast<float>(-range_m * std::cos(elevation_rad) * std::sin(azimuth_rad)));
+    data.Number(static_cast<float>(range_m * std::sin(elevation_rad))).Number(static_cast<std::uint16_t>(ring));
+    data.Number(static_cast<float>(has_times ? 0.1 * column / 360 : 0.0)).Number(static_cast<std::uint32_t>(range_m));
+    ++num_points;
+  };
+  for (int column = 0; column < 360; ++column) {
+    for (int ring = 0; ring < 4; ++ring) {
+      const bool has_second = (column + ring) % 10 == 0;
+      if (has_second) put(column, ring, 25.0, is_same_direction ? 0.0 : 0.003);
+      put(column, ring, 20.0, 0.0);
+    }
+  }
+  return MakeCloud(Encoding::kRos1, 1, num_points, 22, {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"ring", 12, 4}, {"time", 14, 7}, {"label", 18, 6}},
+                   data.bytes);
+}
+
+TEST(CloudScans, KeepBothReturnsOfAShot) {
+  for (const bool has_times : {true, false}) {
+    CloudScans scans;
+    const auto bytes = MakeDualTurn(has_times, true);
+    const auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, bytes), kMadeStampNs, "model");
+    ASSERT_EQ(parts.size(), 1U);
+    const auto& scan = parts[0];
+    EXPECT_FALSE(messages::FaultOf(scan, bus::kMaxMessageBytes));
+    ASSERT_EQ(scan.num_returns, 2);
+    EXPECT_EQ(scan.return_kind, (std::vector<std::int32_t>{lidar_scan_t::RETURN_STRONGEST, lidar_scan_t::RETURN_LAST}));
+    ASSERT_EQ(scan.num_columns, 360);
+    EXPECT_EQ(scans.counts().num_hidden, 0);
+    for (std::size_t shot = 0; shot < 360 * 4; ++shot) {
+      const bool has_second = (shot / 4 + shot % 4) % 10 == 0;
+      EXPECT_EQ(scan.range[2 * shot], 10'000);
+      EXPECT_EQ(scan.range[2 * shot + 1], has_second ? 12'500 : 0);
+      EXPECT_EQ(scans.cell_labels()[2 * shot + 1], has_second ? 25U : 0U);
+    }
+    EXPECT_TRUE(std::ranges::any_of(scans.Remarks(), [](const auto& remark) { return remark.find("two returns") != std::string::npos; }));
+  }
+}
+
+// Points that share a cell by the rounding of a grid are no second returns.
+TEST(CloudScans, TakeNoOtherShotForASecondReturn) {
+  CloudScans scans;
+  const auto bytes = MakeDualTurn(false, false);
+  const auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, bytes), kMadeStampNs, "model");
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].num_returns, 1);
+  EXPECT_EQ(scans.counts().num_hidden, 144);
+}
+
+// Of a cloud without rings 100 rings share 64 bands, and stand above each other.
+TEST(CloudScans, TakeNoOtherRingOfABandForASecondReturn) {
+  Writer data;
+  for (int column = 0; column < 360; ++column) {
+    for (int ring = 0; ring < 100; ++ring) {
+      const double level_m = 20.0 + ring % 2;
+      data.Number(static_cast<float>(level_m * std::cos(DegToRad(column)))).Number(static_cast<float>(-level_m * std::sin(DegToRad(column))));
+      data.Number(static_cast<float>(level_m * std::tan(DegToRad(0.2 * ring))));
+    }
+  }
+  const auto bytes = MakeCloud(Encoding::kRos1, 1, 36'000, 12, {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}}, data.bytes);
+  CloudScans scans;
+  const auto parts = scans.Convert(*ParsePointCloud(Encoding::kRos1, bytes), kMadeStampNs, "model");
+  ASSERT_FALSE(parts.empty());
+  EXPECT_EQ(parts[0].num_returns, 1);
+  EXPECT_GT(scans.counts().num_hidden, 10'000);
 }
 
 // Points at 20 m, at each of these elevations once in a degree.
