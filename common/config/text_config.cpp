@@ -30,7 +30,6 @@ namespace {
 constexpr const char* kLidarFile = "lidar.txtpb";
 constexpr const char* kOldLidarFile = "vlp16.txtpb";
 
-
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
