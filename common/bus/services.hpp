@@ -14,7 +14,7 @@ namespace lookout::bus {
 
 struct ServiceRow {
   std::string_view name;  // of its folder below services/; the program is lookout-<name>
-  std::string_view role;  // which channels name as their publisher. A boat with another lidar has the row of its service in place of vlp16's
+  std::string_view role;  // which channels name as their publisher. one service may fill it
   std::string_view purpose;
   int watchdog_s;           // silence of the main loop after which systemd ends and restarts it; HEALTH feeds the watchdog once a second
   std::string_view needs;   // logs: writes to /var/lib/lookout; serial: opens serial ports; network: nothing else

@@ -22,15 +22,15 @@ constexpr double kDataJitterUs = 60.0;
 }  // namespace
 
 SimulationParams ParamsOfConfig(const std::filesystem::path& config_folder, SimulationParams params) {
-  const auto vlp16 = config::Load<config::Lidar>(config_folder, "lidar.txtpb");
+  const auto lidar_config = config::Load<config::Lidar>(config_folder, "lidar.txtpb");
   const auto navigator = config::Load<config::Navigator>(config_folder, "navigator.txtpb");
-  params.lidar.use_vertical_origin_offsets = vlp16.use_vertical_origin_offsets();
+  params.lidar.use_vertical_origin_offsets = lidar_config.use_vertical_origin_offsets();
   params.navigation.nmea_port = navigator.nmea_port();
-  params.navigation.position_port = vlp16.position_port();
+  params.navigation.position_port = lidar_config.position_port();
   params.navigation.heading_offset_deg = navigator.heading_offset_deg();
   params.navigation.pitch_offset_deg = navigator.pitch_offset_deg();
   params.navigation.roll_offset_deg = navigator.roll_offset_deg();
-  params.data_port = vlp16.data_port();
+  params.data_port = lidar_config.data_port();
   return params;
 }
 

@@ -120,7 +120,7 @@ TEST_F(FieldCapture, WithTheIpLengthOfADataPacketInPositionPacketsLocksTheClock)
   }
   Replay(file);
   EXPECT_TRUE(refused_.empty());
-  EXPECT_EQ(counters_["vlp16.position_packets_whole"], 4);
+  EXPECT_EQ(counters_["lidar.position_packets_whole"], 4);
   ASSERT_FALSE(clocks_.empty());
   EXPECT_EQ(clocks_.back().pps, 2);
   ASSERT_FALSE(fixes_.empty());

@@ -1,4 +1,4 @@
-// Whatever a network does to the packets of a lidar, the counters of vlp16 tell it exactly: the simulator's faults into the service.
+// Whatever a network does to the packets of a lidar, the counters of the lidar process tell it exactly: the simulator's faults into the service.
 #include <unistd.h>
 
 #include <algorithm>

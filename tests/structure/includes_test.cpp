@@ -81,6 +81,8 @@ const std::vector<Rule>& Rules() {
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf", "fmt"}},
       {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
+      // What a maker says of a sensor is JSON.
+      {"services/lidar/core/.*", {"common/core", "OWN/core", "nlohmann-json"}},
       // What it makes is text.
       {"services/plotter/core/.*", {"common/core", "OWN/core", "fmt", "nlohmann-json"}},
       // What a browser says and is told is JSON, and names channels.
@@ -99,6 +101,7 @@ const std::vector<Rule>& Rules() {
        {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types", "fmt"}},
       // Opens what params name.
       {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
+      {"services/lidar/decoders\\..pp", {"common/core", "OWN", "OWN/core"}},
       // A part of the service that knows the host's time, as the core must not.
       {"services/tracker/watch\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
       // A file that one process leaves to the next.

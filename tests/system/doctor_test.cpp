@@ -67,7 +67,7 @@ TEST_F(Doctor, SeesASimulatedBoatByItselfAndThroughItsProcesses) {
   ExpectNoFault(through_processes);
   for (const auto& text :
        {" lidar      VLP-16, strongest return", "clock      the lidar is locked to PPS", "ok       gnss       RTK, fixed", "ok       heading",
-        "(heard on the bus)", "process    vlp16 (pid ", "process    segmenter (pid ", "process    navigator (pid ", "process    georeferencer (pid ",
+        "(heard on the bus)", "process    lidar (pid ", "process    segmenter (pid ", "process    navigator (pid ", "process    georeferencer (pid ",
         "process    tracker (pid ", "process    recorder (pid ", " obstacles  ", " look-out   "}) {
     EXPECT_TRUE(Has(through_processes, text)) << text << " is missing in\n" << through_processes.output;
   }

@@ -100,7 +100,7 @@ TEST_F(HostileText, OfAConfigReachesNoTerminalAsAnEscapeSequence) {
   std::ofstream(Path("config/lidar.txtpb")) << "source: UDP\nbind_address: '" << kEvil << "'\ncut_azimuth_deg: 0\n" << kEvil << "\n";
   const auto result = Run("lidar", {"--config", Path("config"), "--check"});
   EXPECT_EQ(result.exit_code, 2);
-  ExpectPrintable(result, "vlp16 --check");
+  ExpectPrintable(result, "lidar --check");
 }
 
 // They hung, deaf to SIGTERM.

@@ -46,7 +46,7 @@ class LiveVlp16 {
     bus::Subscribe<health_t>(bus_, bus::kHealth, [this](const health_t& message) {
       if (message.process == "lidar") health_ = message;
     });
-    process_.emplace(std::vector<std::string>{support::Bin("lidar"), "--config", config_folder_.string()}, (folder / "vlp16.out").string());
+    process_.emplace(std::vector<std::string>{support::Bin("lidar"), "--config", config_folder_.string()}, (folder / "lidar.out").string());
   }
 
   const std::filesystem::path& config_folder() const { return config_folder_; }

@@ -88,7 +88,7 @@ TEST_F(Live, AKilledSegmenterComesBackAndTheOthersGoOn) {
   std::thread simulator([this] { Simulate(8); });
   EXPECT_TRUE(WaitFor(lcm, bus::kSegments, 10));
   children_["segmenter"]->Signal(SIGKILL);
-  EXPECT_TRUE(WaitFor(lcm, bus::kLidarScan, 10));  // vlp16 does not mind
+  EXPECT_TRUE(WaitFor(lcm, bus::kLidarScan, 10));  // the lidar process does not mind
   Start("segmenter");
   EXPECT_TRUE(WaitFor(lcm, bus::kSegments, 10));
   simulator.join();

@@ -289,7 +289,7 @@ TEST_F(SourcesTest, EachFaultIsNamedAtTheStartAndByCheck) {
   const auto absent = Run("source: INTERFACE interface: 'nosuch0' cut_azimuth_deg: 0", {Program()});
   EXPECT_EQ(absent.exit_code, 1);
   EXPECT_NE(absent.output.find("(there are: lo"), std::string::npos) << absent.output;
-  EXPECT_EQ(absent.output.find("vlp16: vlp16:"), std::string::npos) << absent.output;
+  EXPECT_EQ(absent.output.find("lidar: lidar:"), std::string::npos) << absent.output;
 }
 
 TEST_F(SourcesTest, FaultsOfAllKindsAreNamedAtOnce) {
@@ -298,7 +298,7 @@ TEST_F(SourcesTest, FaultsOfAllKindsAreNamedAtOnce) {
           "allowed_source_address: '192.168.1.300'",
           {Program(), "--check"});
   EXPECT_EQ(result.exit_code, 2);
-  for (const char* fault : {"Z critical vlp16: ", ":2: bind_address:", ":3: data_port:", ":6: allowed_source_address: '192.168.1.300'"}) {
+  for (const char* fault : {"Z critical lidar: ", ":2: bind_address:", ":3: data_port:", ":6: allowed_source_address: '192.168.1.300'"}) {
     EXPECT_NE(result.output.find(fault), std::string::npos) << fault << " is not in " << result.output;
   }
   const auto deaf = Run("source: UDP\nbind_address: '127.0.0.1'\nmulticast_group: '239.9.9.9'\ncut_azimuth_deg: 0", {Program(), "--check"});

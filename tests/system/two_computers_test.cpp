@@ -138,7 +138,7 @@ void TwoComputers::LiveThroughAPulledCable(Out out) {
   const std::vector<std::string> on_first{"navigator", "lidar"};
   const std::vector<std::string> on_second{"recorder", "tracker", "georeferencer", "segmenter"};
   bus::LcmBus lcm(bus::DefaultLcmUrl());
-  std::int64_t num_scans = 0;  // of this computer's own vlp16, cable or not
+  std::int64_t num_scans = 0;  // of this computer's own lidar process, cable or not
   std::int64_t num_placed = 0;
   std::map<std::string, int> num_health;
   lcm.SubscribeRaw(bus::kLidarScan, [&](std::string_view, Bytes) { ++num_scans; });

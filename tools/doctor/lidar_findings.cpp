@@ -20,9 +20,9 @@ constexpr const char* kClockSubject = "clock";
 
 // Share of the packets that may be missing without a warning: at 1 % every second scan has a gap.
 constexpr double kMaxLostShare = 0.01;
-// After such a silence vlp16 complains.
+// After such a silence the lidar process complains.
 constexpr double kLidarSilenceS = 1.0;
-// As vlp16's TIME_AUTO (lidar.proto).
+// As TIME_AUTO (lidar.proto).
 constexpr double kMaxClockDifferenceS = 0.25;
 constexpr const char* kFactorySensor = "192.168.1.201";  // VLP-16 User Manual 63-9243 Rev E: as delivered; sends to 255.255.255.255
 constexpr const char* kLidarCure =

@@ -98,7 +98,7 @@ TEST(HealthReporter, TellsOfASecondPublisherForAMinuteAndKeepsTheCount) {
   auto message = reporter.Make(Utime(), {}, bus);
   EXPECT_EQ(message.state, health_t::STATE_DEGRADED);
   EXPECT_NE(message.reason.find("LIDAR_NMEA has two publishers: 10 messages of the second were refused"), std::string::npos) << message.reason;
-  EXPECT_NE(message.reason.find("show every vlp16 by host and pid"), std::string::npos) << "the role is no process: " << message.reason;
+  EXPECT_NE(message.reason.find("show every lidar by host and pid"), std::string::npos) << message.reason;
   EXPECT_EQ(reporter.Make(Utime(), {HealthState::kFailed, "disk full", {}}, bus).state, health_t::STATE_FAILED);
   pass(599);
   EXPECT_EQ(reporter.Make(Utime(), {}, bus).state, health_t::STATE_DEGRADED);

@@ -113,7 +113,7 @@ TEST(DoctorPlotter, NamesAnOutputThatDoesNotTakeOurData) {
 TEST(DoctorProcesses, SeesTwoOfAKindButNotARestart) {
   auto seen = Healthy();
   seen.processes["lidar"].push_back(Running("lidar", 8));
-  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "vlp16 runs 2 times on one bus");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "lidar runs 2 times on one bus");
   seen.processes["lidar"].front().heard_last = kEnd - std::chrono::seconds(4);
   EXPECT_EQ(About(CheckProcesses(seen), "process").grade, kOk);
 }

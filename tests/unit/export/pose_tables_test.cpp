@@ -128,11 +128,11 @@ TEST_F(TablesTest, HealthQuotesReasonsAndSplitsIntoTrafficAndCounters) {
   health.counters[0].count = 9;
   Add(bus::kHealth, health);
   ASSERT_EQ(Export("health"), kExitFine);
-  EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,degraded,\"no PPS, 3 packets lost\",0.1250,10000000,60.500,1.000,boat,12");
+  EXPECT_EQ(Rows()[0], "1700000000000000,lidar,degraded,\"no PPS, 3 packets lost\",0.1250,10000000,60.500,1.000,boat,12");
   ASSERT_EQ(Export("traffic"), kExitFine);
-  EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,LIDAR_SCAN,out,600,0,0,10.000,,0,,,101200,");
+  EXPECT_EQ(Rows()[0], "1700000000000000,lidar,LIDAR_SCAN,out,600,0,0,10.000,,0,,,101200,");
   ASSERT_EQ(Export("counters"), kExitFine);
-  EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,bad_flag,9");
+  EXPECT_EQ(Rows()[0], "1700000000000000,lidar,bad_flag,9");
 }
 
 TEST_F(TablesTest, ClockFixesAndAttitudeLeaveUnknownNumbersEmpty) {

@@ -356,7 +356,7 @@ TEST(Screen, AnEmptyBusIsSaid) {
 
 TEST(Screen, SilenceIsSaid) {
   const auto lines = Lines(DrawScreen(BusyBoard(), "title", At(14.0), {80, 40}));
-  EXPECT_TRUE(Has(lines, "vlp16         silent"));
+  EXPECT_TRUE(Has(lines, "lidar         silent"));
   EXPECT_TRUE(Has(lines, " no HEALTH for 12 s"));
   EXPECT_TRUE(Has(lines, "no OBSTACLES"));
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 
 namespace lookout::lidar {
 namespace {
@@ -195,7 +196,7 @@ OusterReader::OusterReader(const OusterMetadata& metadata)
     const double elevation_rad = metadata.elevation_rad[channel];
     head_.beams.push_back({.elevation_rad = elevation_rad,
                            .azimuth_offset_rad = metadata.azimuth_offset_rad[channel],
-                           .origin_height_m = metadata.beam_origin_height_m - metadata.beam_origin_m * std::sin(elevation_rad),
+                           .origin_height_m = metadata.beam_origin_height_m - metadata.beam_origin_m * Sin(elevation_rad),
                            .channel = static_cast<int>(channel)});
     pixel_of_ring_.push_back(channel * OusterPixelBytes(metadata.profile));
   }

@@ -235,7 +235,7 @@ void ReadWindow(const MetadataField& window, OusterMetadata& metadata) {
   metadata.last_column = WholeNumberOf(window, (*window.value)[1], 0, metadata.columns_per_frame - 1);
 }
 
-// Firmware 1 has no data format, or a text in its place that says so: 16 columns a packet, the whole turn, LEGACY.
+// Firmware 1 has no data format, or a text in its place that says so: 16 columns a packet, all columns of the revolution, LEGACY.
 void ReadDataFormat(const Json& root, OusterMetadata& metadata) {
   const auto mode_field = FindField(root, {"config_params.lidar_mode", "lidar_mode"});
   auto format = FindField(root, {"lidar_data_format", "data_format"});
