@@ -85,7 +85,7 @@ TEST_F(Indexer, TellsWhatChangesInHealth) {
     log->Health(kBeginUs + 2'000'000, "lidar", health_t::STATE_FAILED, "no packets");
     log->Health(kBeginUs + 3'000'000, "lidar");
   }
-  EXPECT_EQ(TextsOf(Whole(), FilmEventKind::kHealth), (std::vector<std::string>{"lidar: failed: no packets?[2J", "vlp16: OK"}));
+  EXPECT_EQ(TextsOf(Whole(), FilmEventKind::kHealth), (std::vector<std::string>{"lidar: failed: no packets?[2J", "lidar: OK"}));
 }
 
 TEST_F(Indexer, TellsMarksOfRawChannelsWithoutKeepingTheirMessages) {
