@@ -1,8 +1,8 @@
 #include <cstdint>
 #include <string>
 
-#include "tools/export/little_endian.hpp"
-#include "tools/export/returns.hpp"
+#include "common/core/append_bytes.hpp"
+#include "common/messages/returns.hpp"
 #include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
@@ -24,7 +24,7 @@ class PcdSink final : public Sink {
     std::string points;
     int count = 0;
     for (const auto& [part_index, part] : scan->scans) {
-      ForEachReturn(part, LabelsOf(*scan, part), [&](const Return& one) {
+      messages::ForEachReturn(part, LabelsOf(*scan, part), [&](const messages::Return& one) {
         ++count;
         for (const double coordinate_m : {one.p_lidar_m.x(), one.p_lidar_m.y(), one.p_lidar_m.z()}) AppendFloat(coordinate_m, points);
         AppendFloat(one.reflectivity, points);

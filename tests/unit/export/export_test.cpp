@@ -12,7 +12,7 @@
 #include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/export/export_logs.hpp"
-#include "tools/export/words.hpp"
+#include "common/messages/words.hpp"
 
 namespace lookout::exporter {
 namespace {

@@ -11,15 +11,15 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/viewer/foxglove.pb.h"
+#include "common/viewer/foxglove_messages.hpp"
 #include "lookout/alerts_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "tests/support/files.hpp"
-#include "tools/export/foxglove_messages.hpp"
 #include "tools/export/mcap_writer.hpp"
-#include "tools/export/schema/foxglove.pb.h"
 #include "tools/import/byte_source.hpp"
 #include "tools/import/mcap_file.hpp"
 
@@ -107,14 +107,14 @@ TEST(Mcap, HoldsTheLogMessageForMessage) {
 }
 
 struct Drawn {
-  FoxgloveTopic topic;
+  viewer::FoxgloveTopic topic;
   std::string bytes;
 };
 
 template <typename Message>
 std::vector<Drawn> Draw(const bus::Channel& channel, const std::vector<Message>& messages) {
   std::vector<Drawn> drawn;
-  FoxgloveMessages all([&drawn](FoxgloveTopic topic, const std::string& bytes) { drawn.push_back({topic, bytes}); });
+  viewer::FoxgloveMessages all([&drawn](viewer::FoxgloveTopic topic, const std::string& bytes) { drawn.push_back({topic, bytes}); });
   for (const auto& message : messages) all.Take(channel.name, bus::Encode(message));
   all.Finish();
   return drawn;
@@ -196,7 +196,7 @@ TEST(FoxgloveMessages, LetTheBoatFloatOnTheWaterOnWhichObstaclesAreDrawn) {
   for (int i = 0; i < 9; ++i) pose.covariance[i][i] = 1.0;
   const auto drawn = Draw(bus::kPose, std::vector{pose});
   ASSERT_FALSE(drawn.empty());
-  ASSERT_EQ(drawn[0].topic, FoxgloveTopic::kTransforms);
+  ASSERT_EQ(drawn[0].topic, viewer::FoxgloveTopic::kTransforms);
   const auto transforms = Parsed<foxglove::FrameTransforms>(drawn[0].bytes);
   ASSERT_EQ(transforms.transforms_size(), 1);
   EXPECT_EQ(transforms.transforms(0).child_frame_id(), "vessel");
@@ -219,8 +219,8 @@ TEST(FoxgloveMessages, JoinThePartsOfTracksOnTheMapAndLeaveOutWhatHasNoPlace) {
   std::vector<std::string> places;
   int num_entities = 0;
   for (const auto& [topic, bytes] : Draw(bus::kTracks, std::vector{part, second})) {
-    if (topic == FoxgloveTopic::kPlaces) places.push_back(Parsed<foxglove::GeoJSON>(bytes).geojson());
-    if (topic == FoxgloveTopic::kTracks) num_entities += Parsed<foxglove::SceneUpdate>(bytes).entities_size();
+    if (topic == viewer::FoxgloveTopic::kPlaces) places.push_back(Parsed<foxglove::GeoJSON>(bytes).geojson());
+    if (topic == viewer::FoxgloveTopic::kTracks) num_entities += Parsed<foxglove::SceneUpdate>(bytes).entities_size();
   }
   EXPECT_EQ(num_entities, 2);
   ASSERT_EQ(places.size(), 1U);

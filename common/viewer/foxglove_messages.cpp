@@ -1,4 +1,4 @@
-#include "tools/export/foxglove_messages.hpp"
+#include "common/viewer/foxglove_messages.hpp"
 
 #include <fmt/format.h>
 
@@ -13,17 +13,17 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
+#include "common/core/append_bytes.hpp"
 #include "common/core/frames.hpp"
 #include "common/core/printable.hpp"
 #include "common/messages/checks.hpp"
 #include "common/messages/pose_message.hpp"
-#include "tools/export/boat_of_log.hpp"
-#include "tools/export/little_endian.hpp"
-#include "tools/export/returns.hpp"
-#include "tools/export/schema/foxglove.pb.h"
-#include "tools/export/words.hpp"
+#include "common/messages/returns.hpp"
+#include "common/messages/words.hpp"
+#include "common/viewer/boat_of_run_info.hpp"
+#include "common/viewer/foxglove.pb.h"
 
-namespace lookout::exporter {
+namespace lookout::viewer {
 
 namespace {
 
@@ -147,6 +147,25 @@ nlohmann::ordered_json NumberOrNull(double value) { return std::isfinite(value) 
 
 }  // namespace
 
+bool IsDrawnFrom(FoxgloveTopic topic, std::string_view channel) {
+  switch (topic) {
+    case FoxgloveTopic::kPoints:
+      return channel == bus::kLidarScan.name;
+    case FoxgloveTopic::kObstacles:
+      return channel == bus::kObstacles.name;
+    case FoxgloveTopic::kTracks:
+    case FoxgloveTopic::kPlaces:
+      return channel == bus::kTracks.name;
+    case FoxgloveTopic::kLocation:
+      return channel == bus::kPose.name;
+    case FoxgloveTopic::kTransforms:
+      return channel == bus::kPose.name || channel == bus::kLidarScan.name;
+    case FoxgloveTopic::kLog:
+      return channel == bus::kAlerts.name;
+  }
+  return false;
+}
+
 std::string FoxgloveDescriptors(std::string_view schema) {
   const auto* const type = foxglove::PointCloud::descriptor()->file()->pool()->FindMessageTypeByName(std::string(schema));
   if (type == nullptr) throw std::logic_error("no schema " + std::string(schema));
@@ -167,7 +186,8 @@ void FoxgloveMessages::Take(std::string_view channel, Bytes bytes) {
   if (channel == bus::kObstacles.name) return take(bus::Decode<obstacles_t>(bytes), &FoxgloveMessages::OnObstacles);
   if (channel == bus::kTracks.name) return take(bus::Decode<tracks_t>(bytes), &FoxgloveMessages::OnTracks);
   if (channel == bus::kRunInfo.name) {
-    TakeRunInfo(bytes, boat_);
+    if (is_boat_given_) return;
+    if (const auto info = bus::Decode<run_info_t>(bytes)) TakeBoat(*info, boat_);
   } else if (channel == bus::kPose.name) {
     const auto pose = bus::Decode<pose_t>(bytes);
     if (pose && UtimeFromWire(pose->utime_us)) return OnPose(*pose);
@@ -187,7 +207,7 @@ void FoxgloveMessages::OnScan(const lidar_scan_t& message) {
     cloud_utime_us_ = message.utime_us;
   }
   cloud_part_ = message.part_index;
-  ForEachReturn(message, nullptr, [this](const Return& one) {
+  messages::ForEachReturn(message, nullptr, [this](const messages::Return& one) {
     for (int axis = 0; axis < 3; ++axis) AppendFloat(one.p_lidar_m[axis], points_);
     points_.push_back(static_cast<char>(one.reflectivity));
     points_.push_back(static_cast<char>(one.ring));
@@ -349,4 +369,4 @@ void FoxgloveMessages::OnAlerts(const alerts_t& message) {
   told_ = std::move(now);
 }
 
-}  // namespace lookout::exporter
+}  // namespace lookout::viewer
