@@ -6,6 +6,7 @@
 #include <cmath>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/descriptor.pb.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -22,6 +23,7 @@
 #include "common/messages/words.hpp"
 #include "common/viewer/boat_of_run_info.hpp"
 #include "common/viewer/foxglove.pb.h"
+#include "common/viewer/motion.pb.h"
 
 namespace lookout::viewer {
 
@@ -157,6 +159,7 @@ bool IsDrawnFrom(FoxgloveTopic topic, std::string_view channel) {
     case FoxgloveTopic::kPlaces:
       return channel == bus::kTracks.name;
     case FoxgloveTopic::kLocation:
+    case FoxgloveTopic::kMotion:
       return channel == bus::kPose.name;
     case FoxgloveTopic::kTransforms:
       return channel == bus::kPose.name || channel == bus::kLidarScan.name;
@@ -167,7 +170,7 @@ bool IsDrawnFrom(FoxgloveTopic topic, std::string_view channel) {
 }
 
 std::string FoxgloveDescriptors(std::string_view schema) {
-  const auto* const type = foxglove::PointCloud::descriptor()->file()->pool()->FindMessageTypeByName(std::string(schema));
+  const auto* const type = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(std::string(schema));
   if (type == nullptr) throw std::logic_error("no schema " + std::string(schema));
   google::protobuf::FileDescriptorSet set;
   std::set<std::string> taken;
@@ -332,7 +335,18 @@ void FoxgloveMessages::OnPose(const pose_t& message) {
                  transforms);
     Send(FoxgloveTopic::kTransforms, transforms);
   }
-  if (message.utime_us % kLocationPeriodUs != 0 || !std::isfinite(message.latitude_deg) || !std::isfinite(message.longitude_deg)) return;
+  if (message.utime_us % kLocationPeriodUs != 0) return;
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  Motion motion;
+  SetTime(message.utime_us, motion.mutable_timestamp());
+  motion.set_velocity_east_mps(message.velocity_map_mps[0]);
+  motion.set_velocity_north_mps(message.velocity_map_mps[1]);
+  motion.set_speed_mps(std::sqrt(Eigen::Vector2d(message.velocity_map_mps[0], message.velocity_map_mps[1]).squaredNorm()));
+  motion.set_heading_deg(message.heading_source == pose_t::HEADING_NONE ? kUnknown : RadToDeg(message.heading_rad));
+  motion.set_roll_deg(message.has_attitude != 0 ? RadToDeg(message.roll_rad) : kUnknown);
+  motion.set_pitch_deg(message.has_attitude != 0 ? RadToDeg(message.pitch_rad) : kUnknown);
+  Send(FoxgloveTopic::kMotion, motion);
+  if (!std::isfinite(message.latitude_deg) || !std::isfinite(message.longitude_deg)) return;
   foxglove::LocationFix fix;
   SetTime(message.utime_us, fix.mutable_timestamp());
   fix.set_frame_id("vessel");

@@ -26,7 +26,7 @@ class Message;
 
 namespace lookout::viewer {
 
-enum class FoxgloveTopic { kPoints, kObstacles, kTracks, kPlaces, kLocation, kTransforms, kLog };
+enum class FoxgloveTopic { kPoints, kObstacles, kTracks, kPlaces, kLocation, kMotion, kTransforms, kLog };
 
 struct FoxgloveChannel {
   FoxgloveTopic topic;
@@ -39,6 +39,7 @@ inline constexpr std::array kFoxgloveChannels{FoxgloveChannel{FoxgloveTopic::kPo
                                               FoxgloveChannel{FoxgloveTopic::kTracks, "/tracks", "foxglove.SceneUpdate"},
                                               FoxgloveChannel{FoxgloveTopic::kPlaces, "/tracks/map", "foxglove.GeoJSON"},
                                               FoxgloveChannel{FoxgloveTopic::kLocation, "/location", "foxglove.LocationFix"},
+                                              FoxgloveChannel{FoxgloveTopic::kMotion, "/motion", "lookout.viewer.Motion"},
                                               FoxgloveChannel{FoxgloveTopic::kTransforms, "/tf", "foxglove.FrameTransforms"},
                                               FoxgloveChannel{FoxgloveTopic::kLog, "/alerts", "foxglove.Log"}};
 
