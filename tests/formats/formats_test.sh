@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Formats of others, written and read by programs of others.
-#   formats_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (ros, mcap or foxglove)
+#   formats_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (ros, mcap, foxglove or las)
 # Packages of npm are installed into the build folder, as package-lock.json has them: without the network the trial is skipped.
 set -euo pipefail
 trial=$1
