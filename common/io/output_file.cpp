@@ -365,6 +365,19 @@ std::ostream& OutputFile::stream() { return implementation_->stream; }
 
 void OutputFile::Flush() { implementation_->WriteOut(); }
 
+void OutputFile::OverwriteStart(std::string_view text) {
+  if (implementation_->partial.empty()) throw Fault(implementation_->file, "is written from its beginning to its end only");
+  implementation_->WriteOut();
+  off_t position = 0;
+  while (!text.empty()) {
+    const auto num_written = pwrite(implementation_->descriptor, text.data(), text.size(), position);
+    if (num_written < 0 && errno == EINTR) continue;
+    if (num_written <= 0) throw Fault(implementation_->file, ErrnoText());
+    position += num_written;
+    text.remove_prefix(static_cast<std::size_t>(num_written));
+  }
+}
+
 int OutputFile::descriptor() const { return implementation_->descriptor; }
 
 void OutputFile::Prepare() { implementation_->Prepare(); }

@@ -50,6 +50,10 @@ class OutputFile {
   /// Hands the written bytes to the kernel: a reader of FILE.partial finds them. @throws as Write
   void Flush();
 
+  /// Writes over the first bytes of what was written: a head that is known at the end only.
+  /// @throws as Write; std::runtime_error where the output is no regular file of its own
+  void OverwriteStart(std::string_view text);
+
   /// For a library that writes by itself. Nothing may be written by the above then.
   int descriptor() const;
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <spdlog/spdlog.h>
 
+#include "common/config/boat.hpp"
 #include "common/io/disk_reserve.hpp"
 #include "common/runtime/service_main.hpp"
 #include "common/runtime/version.hpp"
@@ -14,6 +15,7 @@
 #include "services/page/film/boat_text.hpp"
 #include "services/page/film/look_back.hpp"
 #include "services/page/film_mode.hpp"
+#include "services/page/foxglove_feed.hpp"
 #include "services/page/params.hpp"
 #include "services/page/server_link.hpp"
 #include "services/page/service.hpp"
@@ -29,6 +31,7 @@ constexpr std::chrono::milliseconds kTick(20);
 struct Config {
   page::Params params;
   std::string boat_text;
+  std::optional<lookout::config::BoatFacts> boat;
   std::string boat_fault;  // why the picture has no guard zone; empty: it has that of tracker.txtpb
 };
 
@@ -37,6 +40,7 @@ struct Config {
 Config Load(const std::filesystem::path& config_folder) {
   Config config;
   config.params = page::LoadParams(config_folder);
+  config.boat = lookout::config::LoadBoat(config_folder);
   config.boat_text = page::BoatTextOfFolder(config_folder, config.boat_fault);
   return config;
 }
@@ -98,6 +102,25 @@ void AddTo(lookout::HealthReport& report, const Faults& faults, const page::Serv
   report.counters.push_back({"look_back_lost", status.num_lost});
 }
 
+std::unique_ptr<page::FoxgloveServer> FoxgloveServerOf(const page::Params& params) {
+  if (!params.foxglove) return nullptr;
+  return std::make_unique<page::FoxgloveServer>(
+      page::FoxgloveOptions{.bind_address = params.foxglove->bind_address,
+                            .port = params.foxglove->port,
+                            .waits_for_port = true,
+                            .allowed_origins = params.foxglove->allowed_origins,
+                            .max_clients = params.foxglove->max_clients,
+                            .name = "lookout " + lookout::runtime::Version() + " on " + lookout::runtime::HostName(),
+                            .session = std::to_string(lookout::ToUtimeUs(lookout::runtime::HostNow())),
+                            .channels = page::FoxgloveChannels()});
+}
+
+void AddTo(lookout::HealthReport& report, const page::FoxgloveServer& foxglove, page::ServerCounts& counts) {
+  if (const auto fault = foxglove.Fault(); !fault.empty()) report.Degrade(fault);
+  counts = foxglove.Counts();
+  for (const auto& [name, count] : counts) report.counters.push_back({name, count});
+}
+
 void Run(lookout::runtime::Process& process, const Config& config) {
   using lookout::runtime::HostNow;
   const auto& params = config.params;
@@ -140,7 +163,19 @@ void Run(lookout::runtime::Process& process, const Config& config) {
   page::Server server(std::move(options), std::move(parts));
   const page::ServerLink::Holder holder(link, server);
   page::ServiceParts service_parts{.server = server, .acknowledgements = acknowledgements, .orders = orders, .now = HostNow};
-  service_parts.add_to_report = [&](lookout::HealthReport& report) { AddTo(report, faults, server, look_back.get()); };
+  const auto foxglove = FoxgloveServerOf(params);
+  std::optional<page::FoxgloveFeed> foxglove_feed;
+  if (foxglove) {
+    foxglove_feed.emplace(*foxglove, config.boat);
+    service_parts.draw = [&foxglove_feed](lookout::Utime time, std::string_view channel, lookout::Bytes message) {
+      foxglove_feed->Take(time, channel, message);
+    };
+  }
+  page::ServerCounts foxglove_counts;  // the names in a report are of it
+  service_parts.add_to_report = [&](lookout::HealthReport& report) {
+    AddTo(report, faults, server, look_back.get());
+    if (foxglove) AddTo(report, *foxglove, foxglove_counts);
+  };
   if (look_back) {
     service_parts.keep = [look_back](lookout::Utime time, std::string_view channel, lookout::Bytes message) {
       look_back->Append(time, channel, message);
@@ -148,6 +183,7 @@ void Run(lookout::runtime::Process& process, const Config& config) {
   }
   page::Service service(process.bus(), std::move(service_parts));
   for (const auto& fault : server.Faults()) spdlog::warn("{}; tried again", fault);
+  if (foxglove && !foxglove->Fault().empty()) spdlog::warn("{}; tried again", foxglove->Fault());
   bool is_announced = false;
   process.Every(kTick, [&] {
     service.AdvanceTo(HostNow());

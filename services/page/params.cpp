@@ -29,6 +29,16 @@ bool IsHostName(const std::string& name) {
   return !name.empty() && name.size() <= kMostBytes && std::ranges::all_of(name, is_letter) && name.front() != '.' && name.front() != '-';
 }
 
+// As a browser sends it: a scheme, and a host with its port or (of files) none.
+bool IsOrigin(const std::string& origin) {
+  constexpr std::string_view kSeparator = "://";
+  constexpr std::size_t kMostBytes = 300;
+  const auto separator = origin.find(kSeparator);
+  if (separator == std::string::npos || separator == 0 || origin.size() > kMostBytes) return false;
+  const auto host = std::string_view(origin).substr(separator + kSeparator.size());
+  return std::ranges::all_of(host, [](char letter) { return letter > ' ' && letter <= '~' && letter != '/' && letter != '*'; });
+}
+
 // In a URL.
 std::string HostOf(const io::IpAddress& address) { return address.is_ipv4() ? io::ToText(address) : "[" + io::ToText(address) + "]"; }
 
@@ -45,11 +55,8 @@ class Reader {
 
   /// @throws config::ConfigError
   void ReadInto(Params& params) {
-    constexpr int kMostNames = 16;
     params.bind_address = message_.bind_address();
-    const auto address = io::ParseIpAddress(params.bind_address);
-    Require(address.has_value(), "bind_address", "'" + params.bind_address + "' is no numeric address");
-    Require(!address || !address->is_multicast(), "bind_address", "'" + params.bind_address + "' is no address of a computer");
+    RequireAddress("bind_address", params.bind_address);
     params.port = message_.port();
     Require(message_.host_name_size() <= kMostNames, "host_name", fmt::format("at most {} names", kMostNames));
     for (const auto& name : message_.host_name()) {
@@ -63,10 +70,30 @@ class Reader {
     params.look_back = std::chrono::minutes(message_.look_back_minutes());
     if (message_.has_look_back_folder()) params.spool_folder = PathOf("look_back_folder", message_.look_back_folder());
     params.spool_max_bytes = message_.look_back_max_bytes();
+    if (message_.has_foxglove()) params.foxglove = ReadFoxglove(message_.foxglove());
     if (!faults_.empty()) throw config::ConfigError(faults_);
   }
 
  private:
+  static constexpr int kMostNames = 16;
+
+  FoxgloveParams ReadFoxglove(const config::FoxgloveViewers& message) {
+    FoxgloveParams params{.bind_address = message.bind_address(), .port = message.port(), .max_clients = message.max_clients()};
+    RequireAddress("foxglove.bind_address", params.bind_address);
+    Require(params.port != message_.port(), "foxglove.port", "must differ from port");
+    Require(message.allowed_origin_size() <= kMostNames, "foxglove.allowed_origin", fmt::format("at most {} origins", kMostNames));
+    for (const auto& origin : message.allowed_origin()) {
+      Require(IsOrigin(origin), "foxglove.allowed_origin", "'" + origin + "' is no origin: https://HOST or http://HOST:PORT, without a path");
+      params.allowed_origins.push_back(origin);
+    }
+    return params;
+  }
+
+  void RequireAddress(const std::string& field, const std::string& text) {
+    const auto address = io::ParseIpAddress(text);
+    Require(address.has_value(), field, "'" + text + "' is no numeric address");
+    Require(!address || !address->is_multicast(), field, "'" + text + "' is no address of a computer");
+  }
   void Require(bool is_right, const std::string& field, const std::string& reason) {
     if (!is_right) faults_.push_back(config::FaultLine(folder_ / kFile, field, reason));
   }
@@ -124,6 +151,10 @@ std::string WhoSees(const std::string& bind_address) {
 std::string InWords(const Params& params) {
   std::string text = fmt::format("# page.txtpb: the picture is for {}, TCP port {}\n", WhoSees(params.bind_address), params.port);
   text += params.allows_acknowledgements ? "# page.txtpb: who has the token acknowledges alerts\n" : "# page.txtpb: nobody acknowledges alerts\n";
+  if (params.foxglove) {
+    text += fmt::format("# page.txtpb: Foxglove and Lichtblick see it, too: {}, TCP port {}\n", WhoSees(params.foxglove->bind_address),
+                        params.foxglove->port);
+  }
   return text;
 }
 

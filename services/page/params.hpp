@@ -10,6 +10,14 @@
 
 namespace lookout::page {
 
+/// Where viewers of Foxglove's protocol are served.
+struct FoxgloveParams {
+  std::string bind_address = "127.0.0.1";  // numeric
+  int port = 8765;
+  std::vector<std::string> allowed_origins = {};
+  int max_clients = 4;
+};
+
 struct Params {
   std::string boat;                        // its name, as in boat.txtpb
   std::string bind_address = "127.0.0.1";  // numeric
@@ -25,6 +33,7 @@ struct Params {
   std::optional<std::filesystem::path> recorder_folder = {};  // whose growing log is read instead; absolute, or relative to the working folder
   std::optional<std::filesystem::path> log_folder = {};       // of the recorder, followed or not: the same
   std::int64_t reserve_bytes = 1'000'000'000;                 // of its disk, that the spool leaves free, too
+  std::optional<FoxgloveParams> foxglove = {};                // nullopt: not at all
 };
 
 /// @param config_folder  the boat's folder, holding boat.txtpb, recorder.txtpb (for its log_folder and reserve_bytes) and page.txtpb, which may be

@@ -76,6 +76,7 @@ void Service::Forward(const bus::Channel& channel) {
     if (watch != nullptr) watch->Note();
     if constexpr (std::is_same_v<T, alerts_t>) OnAlerts(message, time);
     if (parts_.keep) parts_.keep(time, name, bytes);
+    if (parts_.draw) parts_.draw(time, name, bytes);
     if (parts_.server.IsWatched(index)) parts_.server.Publish(index, SlotOf(message), message.utime_us, PartOf(message), time, bytes);
   });
 }

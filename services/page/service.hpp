@@ -63,6 +63,7 @@ struct ServiceParts {
   OrderQueue& orders;
   std::function<Utime()> now;                                                          // host time
   std::function<void(Utime time, std::string_view channel, Bytes message)> keep = {};  // for the last minutes; none: they are not kept
+  std::function<void(Utime time, std::string_view channel, Bytes message)> draw = {};  // for viewers of Foxglove's protocol; none: there are none
   std::function<void(HealthReport& report)> add_to_report = {};                        // further parts of the report
 };
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Formats of others, written and read by programs of others.
-#   formats_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (ros or mcap)
+#   formats_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (ros, mcap, foxglove or las)
 # Packages of npm are installed into the build folder, as package-lock.json has them: without the network the trial is skipped.
 set -euo pipefail
 trial=$1
@@ -25,4 +25,7 @@ if ! cmp -s "$here/package-lock.json" "$npm_folder/installed"; then
   fi
   cp "$here/package-lock.json" "$npm_folder/installed"
 fi
-exec $python -B "$here/${trial}_test.py" "$source_folder" "$build" "$npm_folder"
+command=("$python" -B "$here/${trial}_test.py" "$source_folder" "$build" "$npm_folder")
+[ "$trial" = foxglove ] || exec "${command[@]}"
+command -v lcm-logplayer >/dev/null || skip "lcm-logplayer is not installed"
+exec "$source_folder/tests/system/in_namespace.sh" route "${command[@]}"

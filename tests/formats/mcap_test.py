@@ -67,6 +67,10 @@ def main():
         row = pose.loc[seconds(fix['timestamp'])]
         assert abs(fix['latitude'] - row.latitude_deg) < 1e-9 and abs(fix['longitude'] - row.longitude_deg) < 1e-9
         assert abs(fix['position_covariance'][0] - row.cov_ee_m2) < 1e-6
+    for motion in messages['/motion']:
+        row = pose.loc[seconds(motion['timestamp'])]
+        assert abs(motion['speed_mps'] - row.speed_mps) < 1e-3 and abs(motion['heading_deg'] - row.heading_deg) < 1e-3
+    assert len(messages['/motion']) >= len(messages['/location']) > 0
     transforms = [t for message in messages['/tf'] for t in message['transforms']]
     assert {(t['parent_frame_id'], t['child_frame_id']) for t in transforms} == {('map', 'vessel'), ('vessel', 'lidar')}
     for t in transforms:

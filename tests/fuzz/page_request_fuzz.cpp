@@ -7,6 +7,7 @@
 
 #include "services/page/core/access.hpp"
 #include "services/page/core/request.hpp"
+#include "services/page/core/viewer_protocol.hpp"
 
 using namespace lookout::page;
 
@@ -25,6 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   if (const auto acknowledgement = ParseAcknowledgement(text); acknowledgement && acknowledgement->alert_id == 0) std::abort();
   if (const auto order = ParseOrder(text); order && order->cpa_limit_m && !(*order->cpa_limit_m >= 0.0)) std::abort();
+
+  const auto viewer_request = ParseViewerRequest(text);
+  if (const auto* none = std::get_if<NoRequest>(&viewer_request); none != nullptr && none->reason.empty()) std::abort();
+  ChooseViewerProtocol(text);
 
   static const OwnHosts kOwn{{"localhost", "[::1]"}, 8080};
   // What is taken for a host of ours stands in a header of the answer.

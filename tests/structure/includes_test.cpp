@@ -79,6 +79,10 @@ const std::vector<Rule>& Rules() {
       {"common/bus/.*", {"common/core", "common/bus", "common/io", "lcm", "openssl", "socket"}},
       {"common/messages/.*", {"common/core", "common/messages", "wire types"}},
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf", "fmt"}},
+      // What viewers of others draw, in their messages.
+      {"common/viewer/.*",
+       {"common/core", "common/bus", "common/messages", "common/config", "common/viewer", "wire types", "config types", "protobuf", "nlohmann-json",
+        "fmt"}},
       {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       // What a maker says of a sensor is JSON.
@@ -112,6 +116,8 @@ const std::vector<Rule>& Rules() {
       // The page: messages to browsers go by its own server.
       {"services/page/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "OWN/io", "wire types"}},
       {"services/page/tiles\\..pp", {"common/core", "OWN", "OWN/io", "fmt", "nlohmann-json", "sqlite"}},
+      // From the bus to viewers, by a server of its own.
+      {"services/page/foxglove_feed\\..pp", {"common/core", "common/bus", "common/config", "common/viewer", "OWN", "OWN/core", "OWN/io"}},
       {"services/page/token\\..pp", {"common/core", "common/io", "OWN", "fmt"}},
       {"services/page/announcement\\..pp", {"common/core", "OWN", "fmt", "qrencode"}},
       {"services/page/(assets|server_link)\\.hpp", {"common/core", "OWN/io"}},

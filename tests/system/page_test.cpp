@@ -1,4 +1,5 @@
 // lookout-page on a live bus: its files, live frames, who may ask, and an acknowledgement that reaches the bus.
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
@@ -21,7 +22,7 @@ const std::string kToken = "0123456789abcdef0123456789abcdef";
 class Page : public LiveScene {
  protected:
   Page() {
-    std::ofstream(folder_ / "config/page.txtpb") << "token_file: 'token' look_back_folder: 'spool'\n";
+    std::ofstream(folder_ / "config/page.txtpb") << "token_file: 'token' look_back_folder: 'spool' foxglove {}\n";
     std::ofstream(folder_ / "config/token") << kToken << "\n";
     std::filesystem::permissions(folder_ / "config/token", std::filesystem::perms::owner_read);
     Start("page");
@@ -70,6 +71,18 @@ TEST_F(Page, ShowsTheBusAndCarriesAnAcknowledgementBack) {
   ASSERT_EQ(acknowledged_.size(), 1U);
   EXPECT_EQ(acknowledged_[0].source, "page");
   EXPECT_EQ(acknowledged_[0].alert_id, alerts->alerts[0].id);
+  EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
+}
+
+TEST_F(Page, ServesViewersOfFoxglovesProtocolOnAPortOfTheirOwn) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  constexpr int kFoxglovePort = 8765;
+  const PageBrowser viewer(kFoxglovePort);
+  EXPECT_EQ(viewer.Ask("GET", "/").status, 426) << "a WebSocket is wanted";
+  EXPECT_EQ(viewer.Ask("GET", "/", "", "", "https://evil.example").status, 403);
+  EXPECT_TRUE(Until([this] {
+    return std::ranges::any_of(health_.counters, [](const auto& one) { return one.name == "foxglove_refused_origin" && one.count == 1; });
+  })) << child_->Output();
   EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
 }
 

@@ -110,9 +110,38 @@ assert len(poses) == len(rows) and poses['covariance'].shape == (len(rows), 9, 9
 is_placed = numpy.isfinite(poses['latitude_deg'])
 assert numpy.allclose(poses['latitude_deg'][is_placed], [float(row['latitude_deg']) for row in rows if row['latitude_deg']], atol=1e-9)
 assert len(lookout.table(log, 'NONE')) == 0
-points = numpy.concatenate([lookout.scan_points(message) for _, message in lookout.messages(log, 'LIDAR_SCAN')])
+all_points = numpy.concatenate([lookout.scan_points(message) for _, message in lookout.messages(log, 'LIDAR_SCAN')])
 rows = exported('returns')
-assert len(points) == len(rows)
+assert len(all_points) == len(rows)
 for axis in ('x_m', 'y_m', 'z_m'):
-    assert numpy.abs(points[axis] - [float(row[axis]) for row in rows]).max() < 6e-5
-print(f'{sum(channels.values())} messages, {len(obstacles)} obstacles, {len(points)} returns')
+    assert numpy.abs(all_points[axis] - [float(row[axis]) for row in rows]).max() < 6e-5
+
+
+class Axes:
+    """Takes what plot_scan draws, in place of matplotlib's."""
+
+    def __init__(self):
+        self.figure = self
+        self.limits = []
+
+    def scatter(self, x, y, c, **_):
+        self.right_m, self.ahead_m, self.colours = x, y, c
+
+    def set_title(self, text):
+        self.title = text
+
+    def set_xlim(self, *limits):
+        self.limits.append(limits)
+
+    set_ylim = set_xlim
+
+    def __getattr__(self, _):
+        return lambda *args, **options: None
+
+
+_, scan = next(lookout.messages(log, 'LIDAR_SCAN'))
+axes = lookout.plot_scan(scan, Axes(), 'range_m', 60)
+points = lookout.scan_points(scan)
+assert (axes.right_m == -points['y_m']).all() and (axes.ahead_m == points['x_m']).all() and (axes.colours == points['range_m']).all()
+assert axes.title == f'scan {scan.seq}: {len(points)} returns' and axes.limits == [(-60, 60)] * 2
+print(f'{sum(channels.values())} messages, {len(obstacles)} obstacles, {len(all_points)} returns')

@@ -17,10 +17,23 @@ mkdir "$work/from_sources" "$work/installed"
 PYTHONPATH=$source_folder/python $python "$source_folder/tests/system/python_package_test.py" "$bin" "$work/day.lcmlog" \
   "$source_folder/tests/golden/fingerprints.txt" "$work/from_sources"
 
-sed -n '/^```python$/,/^```$/p' "$source_folder/python/README.md" | sed '/^```/d' >"$work/example.py"
-[ "$(wc -l <"$work/example.py")" -ge 9 ] || fail "python/README.md holds no example"
-PYTHONPATH=$source_folder/python $python "$work/example.py" "$work/day.lcmlog" >"$work/example.txt"
+# The examples of the page, each as it stands there: example_1.py is of logs, 2 live, 3 a picture.
+awk -v folder="$work" '/^```python$/ { file = folder "/example_" ++number ".py"; next } /^```$/ { file = "" } file { print > file }' "$source_folder/python/README.md"
+for number in 1 2 3; do [ "$(wc -l <"$work/example_$number.py")" -ge 9 ] || fail "python/README.md lacks its example $number"; done
+PYTHONPATH=$source_folder/python $python "$work/example_1.py" "$work/day.lcmlog" >"$work/example.txt"
 grep -q ' obstacles, [0-9]* sure ones within 30 m' "$work/example.txt" && grep -q ' returns, the nearest at ' "$work/example.txt" || fail "the example"
+if $python -c 'import matplotlib' 2>/dev/null; then
+  PYTHONPATH=$source_folder/python $python "$work/example_3.py" "$work/day.lcmlog" "$work/scan.png" >/dev/null
+  [ "$(head -c 4 "$work/scan.png" | tail -c 3)" = PNG ] || fail "the picture"
+else
+  echo "skipped: the picture of a scan: python3-matplotlib is not installed"
+fi
+# Live: a log is played on the bus by LCM's own player, with messages that are cut into fragments.
+if command -v lcm-logplayer >/dev/null; then
+  PYTHONPATH=$source_folder/python $python "$source_folder/tests/system/python_live_test.py" "$work/day.lcmlog" "$work/example_2.py" "$work"
+else
+  echo "skipped: live messages: lcm-logplayer is not installed"
+fi
 
 $python -W ignore -c 'import ensurepip, setuptools, venv' 2>/dev/null ||
   { echo "skipped: the package as pip installs it: python3-pip, python3-setuptools or python3-venv is not installed"; exit 0; }

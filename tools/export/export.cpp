@@ -178,6 +178,7 @@ int Export(const Request& request, const Output& row, std::ostream& errors) {
   std::string text;
   PlacedRows placed(request);
   bool holds_events = false;
+  bool has_written = false;
   runtime::Progress progress("lookout-export", ProgressOf(request));
   std::int64_t total_bytes = 1;
   for (const auto& reader : readers) total_bytes += reader->size_bytes();
@@ -188,7 +189,7 @@ int Export(const Request& request, const Output& row, std::ostream& errors) {
       holds_events = true;
       progress.Update(static_cast<double>(done_bytes + readers[i]->position_bytes()) / static_cast<double>(total_bytes));
       const auto tally = std::ranges::find(tallies, event->channel, [](const Tally& one) { return one.channel.name; });
-      if (!span.Holds(event->bytes)) continue;
+      if (!span.Holds(event->bytes) && !sink->IsWantedAtAnyTime(event->channel)) continue;
       placed.Add(event->channel, event->bytes);
       if (tally == tallies.end()) continue;
       const auto taken = sink->Take(event->channel, event->bytes, text);
@@ -201,6 +202,7 @@ int Export(const Request& request, const Output& row, std::ostream& errors) {
       if (text.size() >= kBlockBytes) {
         output.Write(text);
         text.clear();
+        has_written = true;
       }
     }
     done_bytes += readers[i]->size_bytes();
@@ -220,10 +222,11 @@ int Export(const Request& request, const Output& row, std::ostream& errors) {
     const auto of_this = tallies.front().num_of_other_type > 0 ? " of this version's type" : "";
     throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name) + of_this + (when.empty() ? "" : " " + when));
   }
-  if (request.format != "csv" && text.empty()) {  // the end of the written text is not empty
+  if (request.format != "csv" && text.empty() && !has_written) {
     throw std::runtime_error(request.scan ? "the input holds no scan " + std::to_string(*request.scan) : std::string(row.when_empty));
   }
   output.Write(text);
+  if (const auto head = sink->Head(); !head.empty()) output.OverwriteStart(head);
   output.Commit();
   return kExitFine;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/export/cloud.hpp"
 #include "tools/export/selection.hpp"
 
 namespace lookout::exporter {
@@ -21,7 +22,8 @@ struct Request {
   bool force = false;                                          // an existing output is replaced
   std::optional<std::int64_t> scan = std::nullopt;             // seq of the scan; nullopt = the last whole one (maps: all)
   bool is_last_scan = false;                                   // maps: the last whole one
-  bool all_scans = false;                                      // merges as csv: in place of one
+  bool all_scans = false;                                      // merges as csv, pcd, las: in place of one
+  CloudFrame frame = CloudFrame::kLidar;                       // pcd and las
   std::optional<std::filesystem::path> config = std::nullopt;  // merges: the boat's folder, by which scans are segmented again
   std::string from = {};                                       // csv and maps: as FindTime; empty = the start
   std::string to = {};                                         // the first time that is not in it; empty = the end

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,13 +54,19 @@ int main(int argc, char** argv) {
   app.add_option("--config", request.config,
                  exporter::PlacesText(exporter::kConfigOption) + ": the boat's folder, by which LIDAR_SCAN is segmented again")
       ->check(lookout::config::BoatFolderFault);
+  app.add_option("--frame", request.frame,
+                 exporter::PlacesText(exporter::kFrameOption) +
+                     ": lidar; vessel: x forward, y port, z up; earth: WGS84 (las), or east, north and up of "
+                     "the datum (pcd)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, exporter::CloudFrame>{
+          {"lidar", exporter::CloudFrame::kLidar}, {"vessel", exporter::CloudFrame::kVessel}, {"earth", exporter::CloudFrame::kEarth}}));
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
   app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line or config.");
   try {
     app.parse(argc, argv);
     const bool is_mcap = request.format == exporter::kMcapFormat;
     if (!is_mcap && request.table.empty()) throw CLI::RequiredError("--table");
-    for (const char* other : {"--table", "--scan", "--from", "--to", "--near", "--config"}) {
+    for (const char* other : {"--table", "--scan", "--from", "--to", "--near", "--config", "--frame"}) {
       if (is_mcap && app.get_option(other)->count() > 0) throw CLI::ValidationError(other, "does not go with --format mcap: it is of the whole log");
     }
     request.all_scans = scan == "all";

@@ -3,11 +3,11 @@
 #include <numeric>
 
 #include "common/bus/channels.hpp"
+#include "common/messages/words.hpp"
 #include "tools/export/csv.hpp"
 #include "tools/export/map_merge.hpp"
 #include "tools/export/map_reader.hpp"
 #include "tools/export/own_map_text.hpp"
-#include "tools/export/words.hpp"
 
 namespace lookout::exporter {
 

@@ -16,8 +16,8 @@
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
+#include "common/viewer/foxglove_messages.hpp"
 #include "lookout/run_info_t.hpp"
-#include "tools/export/foxglove_messages.hpp"
 #include "tools/export/mcap_writer.hpp"
 
 namespace lookout::exporter {
@@ -49,7 +49,7 @@ class LogToMcap {
  public:
   explicit LogToMcap(McapWriter::Take take)
       : writer_("lookout " + runtime::Version(), std::move(take)),
-        messages_([this](FoxgloveTopic topic, const std::string& bytes) { Draw(topic, bytes); }) {}
+        messages_([this](viewer::FoxgloveTopic topic, const std::string& bytes) { Draw(topic, bytes); }) {}
 
   void Take(Utime time, std::string_view channel, Bytes bytes) {
     const auto utime_us = ToUtimeUs(time);
@@ -102,21 +102,21 @@ class LogToMcap {
     return schemas_.emplace(name, writer_.AddSchema(name, encoding, data())).first->second;
   }
 
-  void Draw(FoxgloveTopic topic, const std::string& bytes) {
-    const auto& row = *std::ranges::find(kFoxgloveChannels, topic, &FoxgloveChannel::topic);
+  void Draw(viewer::FoxgloveTopic topic, const std::string& bytes) {
+    const auto& row = *std::ranges::find(viewer::kFoxgloveChannels, topic, &viewer::FoxgloveChannel::topic);
     auto found = drawn_.find(topic);
     if (found == drawn_.end()) {
-      const auto schema = SchemaOf(std::string(row.schema), "protobuf", [&row] { return FoxgloveDescriptors(row.schema); });
+      const auto schema = SchemaOf(std::string(row.schema), "protobuf", [&row] { return viewer::FoxgloveDescriptors(row.schema); });
       found = drawn_.emplace(topic, writer_.AddChannel(schema, row.name, "protobuf")).first;
     }
     writer_.AddMessage(found->second, time_ns_, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
   }
 
   McapWriter writer_;
-  FoxgloveMessages messages_;
+  viewer::FoxgloveMessages messages_;
   std::map<std::string, std::uint16_t, std::less<>> raw_;
   std::map<std::string, std::uint16_t, std::less<>> schemas_;
-  std::map<FoxgloveTopic, std::uint16_t> drawn_;
+  std::map<viewer::FoxgloveTopic, std::uint16_t> drawn_;
   std::uint64_t time_ns_ = 0;
   bool has_run_info_ = false;
   std::int64_t num_before_1970_ = 0;

@@ -7,10 +7,10 @@
 
 #include "common/bus/decode.hpp"
 #include "common/core/utime.hpp"
+#include "common/messages/words.hpp"
 #include "tools/export/map_sinks.hpp"
 #include "tools/export/outlines.hpp"
 #include "tools/export/scans.hpp"
-#include "tools/export/words.hpp"
 
 namespace lookout::exporter {
 

@@ -6,6 +6,7 @@
 
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
+#include "common/runtime/version.hpp"
 #include "tools/export/map_formats.hpp"
 #include "tools/export/map_sinks.hpp"
 #include "tools/export/map_table.hpp"
@@ -24,7 +25,13 @@ segmenter::Params MergingParams(const std::filesystem::path& config_folder) {
 
 std::unique_ptr<Sink> MakeCsv(const Request& request) { return MakeCsvSink(request.table, request.near); }
 std::unique_ptr<Sink> MakePly(const Request& request) { return MakePlySink(request.scan); }
-std::unique_ptr<Sink> MakePcd(const Request& request) { return MakePcdSink(request.scan); }
+std::unique_ptr<Sink> MakePcd(const Request& request) {
+  const bool is_of_one = IsOfOneScan(request);
+  return MakeCloudSink(MakePcdWriter(request.frame, is_of_one), request.frame, request.scan, is_of_one);
+}
+std::unique_ptr<Sink> MakeLas(const Request& request) {
+  return MakeCloudSink(MakeLasWriter(request.frame, "lookout-export " + runtime::Version()), request.frame, request.scan, IsOfOneScan(request));
+}
 template <ChosenScan::Of what>
 std::unique_ptr<Sink> MakeScanPicture(const Request& request) {
   return MakeScanSvgSink(what, request.scan);
@@ -56,11 +63,13 @@ std::unique_ptr<Sink> MakeOwnMap(const Request& /*request*/) {
 
 constexpr unsigned kPartOfLog = kSpanOption | kNearOption;
 constexpr unsigned kPartOrScan = kPartOfLog | kScanOption | kLastScanOption;
+constexpr unsigned kOfCloud = kScanOption | kAllScansOption | kSpanOption | kFrameOption;
 constexpr std::string_view kNoPlace = "no pose knows its position";
 
 constexpr std::array kRows{Output{"returns", "csv", kSpanOption, MakeCsv},
                            Output{"returns", "ply", kScanOption, MakePly},
-                           Output{"returns", "pcd", kScanOption, MakePcd},
+                           Output{"returns", "pcd", kOfCloud, MakePcd},
+                           Output{"returns", "las", kOfCloud, MakeLas},
                            Output{"returns", "svg", kScanOption, MakeScanPicture<ChosenScan::Of::kReturns>},
                            Output{"segments", "csv", kSpanOption, MakeCsv},
                            Output{"obstacles", "csv", kPartOfLog, MakeCsv},
@@ -143,7 +152,7 @@ const Output* FindOutput(std::string_view table, std::string_view format) {
 }
 
 std::vector<std::string> FormatNames() {
-  std::vector<std::string> names{"csv", "ply", "pcd", "svg"};
+  std::vector<std::string> names{"csv", "ply", "pcd", "las", "svg"};
   for (const auto& row : Outputs()) {
     if (std::ranges::find(names, row.format) == names.end()) names.emplace_back(row.format);
   }
@@ -152,6 +161,8 @@ std::vector<std::string> FormatNames() {
 
 std::string FormatsText() { return FormatsWith(kNoOption); }
 std::string PlacesText(Option option) { return FormatsWith(option); }
+
+bool IsOfOneScan(const Request& request) { return !request.all_scans && request.span.IsAll() && request.from.empty() && request.to.empty(); }
 
 std::string OutputFault(const Request& request) {
   const auto names = TableNames();
@@ -172,8 +183,13 @@ std::string OutputFault(const Request& request) {
        {GivenOption{kScanOption, request.scan.has_value(), "--scan is"},
         GivenOption{kLastScanOption, is_map && request.is_last_scan, "--scan last is"},
         GivenOption{kAllScansOption, request.all_scans, "--scan all is"}, GivenOption{kSpanOption, is_part, "--from and --to are"},
-        GivenOption{kNearOption, request.near.has_value(), "--near is"}, GivenOption{kConfigOption, request.config.has_value(), "--config is"}}) {
+        GivenOption{kFrameOption, request.frame != CloudFrame::kLidar, "--frame is"}, GivenOption{kNearOption, request.near.has_value(), "--near is"},
+        GivenOption{kConfigOption, request.config.has_value(), "--config is"}}) {
     if (is_given && (row->options & option) == 0) return std::string(option_names) + " for " + PlacesText(option) + " only";
+  }
+  if ((row->options & kFrameOption) != 0 && !IsOfOneScan(request)) {
+    if (request.scan || request.is_last_scan) return "--scan NUMBER and --scan last do not go with --from and --to";
+    if (!request.output) return "--format " + request.format + " of several scans needs --out: its head is written last";
   }
   if ((row->options & kConfigOption) != 0 && !request.config) return "--table " + request.table + " needs --config: scans are segmented again by it";
   return "";

@@ -20,6 +20,7 @@ enum Option : unsigned {
   kLastScanOption = 8,   // --scan last means another thing than no --scan: a map is of all scans
   kAllScansOption = 16,  // --scan all
   kConfigOption = 32,    // --config, which must be given then
+  kFrameOption = 64,     // --frame
 };
 
 struct Output {
@@ -46,6 +47,9 @@ std::string FormatsText();
 
 /// "csv of every table but map; kml and gpx of obstacles": where an option can be given.
 std::string PlacesText(Option option);
+
+/// Whether a cloud is of one scan: neither --scan all nor --from or --to is given.
+bool IsOfOneScan(const Request& request);
 
 /// The fault of table, format and options of the request; empty when there is none.
 std::string OutputFault(const Request& request);

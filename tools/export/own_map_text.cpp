@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
-#include "tools/export/words.hpp"
+#include "common/messages/words.hpp"
 
 namespace lookout::exporter {
 

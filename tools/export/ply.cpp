@@ -1,9 +1,9 @@
 #include <cstdint>
 #include <string>
 
+#include "common/core/append_bytes.hpp"
+#include "common/messages/returns.hpp"
 #include "tools/export/colour.hpp"
-#include "tools/export/little_endian.hpp"
-#include "tools/export/returns.hpp"
 #include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
@@ -27,7 +27,7 @@ class PlySink final : public Sink {
     std::string vertices;
     int count = 0;
     for (const auto& [part_index, part] : scan->scans) {
-      ForEachReturn(part, LabelsOf(*scan, part), [&](const Return& one) {
+      messages::ForEachReturn(part, LabelsOf(*scan, part), [&](const messages::Return& one) {
         ++count;
         for (const double coordinate_m : {one.p_lidar_m.x(), one.p_lidar_m.y(), one.p_lidar_m.z()}) AppendFloat(coordinate_m, vertices);
         const Rgb colour = one.label > 0 ? ColourOfSegment(one.label) : ColourOfReason(one.reason);

@@ -14,13 +14,13 @@
 #include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
 #include "common/messages/heading_history.hpp"
+#include "common/messages/returns.hpp"
+#include "common/messages/words.hpp"
 #include "lookout/pose_t.hpp"
 #include "tools/export/boat_of_log.hpp"
 #include "tools/export/colour.hpp"
 #include "tools/export/merge_rounds.hpp"
-#include "tools/export/returns.hpp"
 #include "tools/export/sinks.hpp"
-#include "tools/export/words.hpp"
 
 namespace lookout::exporter {
 
@@ -361,7 +361,7 @@ Picture PictureOfReturns(const ScanMessages& scan, const MergeReasons& reasons, 
   for (const auto& [part_index, part] : scan.scans) {
     const auto* labels = LabelsOf(scan, part);
     has_labels = has_labels || labels != nullptr;
-    ForEachReturn(part, labels, [&](const Return& one) {
+    messages::ForEachReturn(part, labels, [&](const messages::Return& one) {
       ++num_returns;
       dots[{one.label, one.reason}].points.push_back(to_picture(one.p_lidar_m));
     });

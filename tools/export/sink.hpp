@@ -26,8 +26,14 @@ class Sink {
   /// Takes a message of one of its channels, in the order of the log, and appends its output to `text`.
   virtual Taken Take(std::string_view channel, Bytes bytes, std::string& text) = 0;
 
+  /// Whether messages of one of its channels are taken whatever part of the log is asked for.
+  virtual bool IsWantedAtAnyTime(std::string_view /*channel*/) const { return false; }
+
   /// End of the input: appends the rest.
   virtual void Finish(std::string& text) = 0;
+
+  /// After that: what takes the place of the first bytes of its output; empty: they stay.
+  virtual std::string Head() const { return {}; }
 
   /// Whether later messages cannot change the result.
   virtual bool IsDone() const { return false; }

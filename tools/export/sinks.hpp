@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/segmenter/params.hpp"
+#include "tools/export/cloud.hpp"
 #include "tools/export/scans.hpp"
 #include "tools/export/selection.hpp"
 #include "tools/export/sink.hpp"
@@ -29,8 +30,11 @@ std::unique_ptr<Sink> MakeCsvSink(std::string_view table, const std::optional<Ci
 /// @param seq  of the scan; nullopt = the last whole one
 std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> seq);
 
-/// The same as a PCD file (binary) of the Point Cloud Library: x y z intensity label ring time. `label` is -1 where the log holds no SEGMENTS.
-std::unique_ptr<Sink> MakePcdSink(std::optional<std::int64_t> seq);
+/// A cloud of one scan, or of all that it is given.
+///
+/// @param seq  of one scan; nullopt = the last whole one
+/// Finish throws std::runtime_error where no return has a place in the frame; Take where the mounting is not known.
+std::unique_ptr<Sink> MakeCloudSink(std::unique_ptr<CloudWriter> writer, CloudFrame frame, std::optional<std::int64_t> seq, bool is_of_one_scan);
 
 /// One scan from above, 1320 x 1000 pixels: its returns with their segments, or its obstacles. The same text for the same log.
 std::unique_ptr<Sink> MakeScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq);

@@ -10,6 +10,8 @@
 
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
+#include "common/messages/returns.hpp"
+#include "common/messages/words.hpp"
 #include "lookout/alerts_t.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
@@ -24,10 +26,8 @@
 #include "tools/export/map_geometry.hpp"
 #include "tools/export/map_table.hpp"
 #include "tools/export/outlines.hpp"
-#include "tools/export/returns.hpp"
 #include "tools/export/sinks.hpp"
 #include "tools/export/velocity.hpp"
-#include "tools/export/words.hpp"
 
 namespace lookout::exporter {
 
@@ -45,7 +45,7 @@ struct TracksOfScan {
   std::map<std::int32_t, std::int64_t> of_piece;  // as TRACKS say; empty: they say nothing of pieces
   std::map<std::int32_t, std::int64_t> of_segment;
 
-  std::optional<std::int64_t> Of(const Return& one) const {
+  std::optional<std::int64_t> Of(const messages::Return& one) const {
     const auto& tracks = of_piece.empty() ? of_segment : of_piece;
     const auto found = tracks.find(of_piece.empty() ? one.label : one.piece);
     return found == tracks.end() || found->second == tracks_t::PIECE_NO_TRACK ? std::nullopt : std::optional(found->second);
@@ -67,7 +67,7 @@ TracksOfScan TracksOf(const ScanMessages& scan) {
 void AppendReturns(const ScanMessages& scan, std::string& text) {
   const auto tracks = TracksOf(scan);
   for (const auto& [part_index, part] : scan.scans) {
-    ForEachReturn(part, LabelsOf(scan, part), [&, &columns = part](const Return& one) {
+    messages::ForEachReturn(part, LabelsOf(scan, part), [&, &columns = part](const messages::Return& one) {
       const auto append = [&](const auto& label, const auto& reason, const auto& track_id, const auto& piece) {
         // The wire counts ranges in 2 mm.
         AppendRow(text, columns.utime_us, one.utime_us, one.ring, one.return_index, Direction{one.azimuth_rad}, Fixed{one.range_m, 3},

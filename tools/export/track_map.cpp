@@ -11,13 +11,13 @@
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
 #include "common/core/utime.hpp"
+#include "common/messages/words.hpp"
 #include "lookout/alerts_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "tools/export/map_sinks.hpp"
 #include "tools/export/outlines.hpp"
 #include "tools/export/waterline.hpp"
-#include "tools/export/words.hpp"
 
 namespace lookout::exporter {
 

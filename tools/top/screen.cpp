@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "common/core/printable.hpp"
+#include "common/messages/words.hpp"
 #include "tools/export/velocity.hpp"
-#include "tools/export/words.hpp"
 #include "tools/top/format.hpp"
 
 namespace lookout::top {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "common/core/angles.hpp"
+#include "common/messages/words.hpp"
 #include "lab/eval/table.hpp"
-#include "tools/export/words.hpp"
 
 namespace lookout::eval {
 namespace {

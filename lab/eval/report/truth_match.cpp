@@ -9,7 +9,7 @@
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
 #include "common/core/log_time.hpp"
-#include "tools/export/returns.hpp"
+#include "common/messages/returns.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -31,7 +31,7 @@ constexpr std::int64_t kLeastReturns = 200;
 // A receiver that jumps or drifts is not as far away, over half of the run.
 constexpr double kMaxPoseDistanceM = 100.0;
 
-bool IsAsFar(const Truth::Return& made, const exporter::Return& seen) {
+bool IsAsFar(const Truth::Return& made, const messages::Return& seen) {
   return std::abs(static_cast<double>(made.p_lidar_m.norm()) - seen.range_m) <= kAgreeingM;
 }
 
@@ -106,7 +106,7 @@ void TruthMatch::Add(const pose_t& pose) {
 }
 
 void TruthMatch::MatchByTime(const lidar_scan_t& scan, ReturnMatch& match) const {
-  exporter::ForEachReturn(scan, nullptr, [&](const exporter::Return& seen) {
+  messages::ForEachReturn(scan, nullptr, [&](const messages::Return& seen) {
     ++match.num_returns;
     const auto* const made = truth_.Find(seen.utime_us, seen.ring, seen.return_index, scan.first_column + seen.column);
     if (made == nullptr) return;
@@ -119,7 +119,7 @@ void TruthMatch::MatchByTime(const lidar_scan_t& scan, ReturnMatch& match) const
 void TruthMatch::MatchByDirection(const lidar_scan_t& scan, ReturnMatch& match) const {
   const double least_cosine = Cos(DegToRad(kSameDirectionDeg));
   std::int64_t index = 0;
-  exporter::ForEachReturn(scan, nullptr, [&](const exporter::Return& seen) {
+  messages::ForEachReturn(scan, nullptr, [&](const messages::Return& seen) {
     if (index++ % kDirectionStep != 0) return;
     ++match.num_returns;
     const auto* const made = truth_.FindAlong(seen.p_lidar_m.normalized(), least_cosine,

@@ -334,5 +334,18 @@ TEST_F(Output, AnOpenFileThatIsAnInputIsRefused) {
   close(descriptor);
 }
 
+TEST(OutputHead, IsWrittenLastAndOnlyIntoAFileOfItsOwn) {
+  const support::TempDir folder;
+  OutputFile output(folder / "out");
+  output.Write("????, points");
+  output.OverwriteStart("head");
+  output.Write(" more");
+  output.Commit();
+  EXPECT_EQ(support::ReadFile(folder / "out"), "head, points more");
+  OutputFile direct("/dev/null");
+  direct.Write("????");
+  EXPECT_THROW(direct.OverwriteStart("head"), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace lookout::io

@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "common/io/stop_signal.hpp"
+#include "common/messages/words.hpp"
 #include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/export/export_logs.hpp"
-#include "tools/export/words.hpp"
 
 namespace lookout::exporter {
 namespace {

@@ -1,9 +1,16 @@
 // Logs as MCAP files.
 #include "tools/export/mcap.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <google/protobuf/descriptor.h>
 #include <gtest/gtest.h>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -11,15 +18,16 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/viewer/foxglove.pb.h"
+#include "common/viewer/foxglove_messages.hpp"
+#include "common/viewer/motion.pb.h"
 #include "lookout/alerts_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "tests/support/files.hpp"
-#include "tools/export/foxglove_messages.hpp"
 #include "tools/export/mcap_writer.hpp"
-#include "tools/export/schema/foxglove.pb.h"
 #include "tools/import/byte_source.hpp"
 #include "tools/import/mcap_file.hpp"
 
@@ -107,14 +115,14 @@ TEST(Mcap, HoldsTheLogMessageForMessage) {
 }
 
 struct Drawn {
-  FoxgloveTopic topic;
+  viewer::FoxgloveTopic topic;
   std::string bytes;
 };
 
 template <typename Message>
 std::vector<Drawn> Draw(const bus::Channel& channel, const std::vector<Message>& messages) {
   std::vector<Drawn> drawn;
-  FoxgloveMessages all([&drawn](FoxgloveTopic topic, const std::string& bytes) { drawn.push_back({topic, bytes}); });
+  viewer::FoxgloveMessages all([&drawn](viewer::FoxgloveTopic topic, const std::string& bytes) { drawn.push_back({topic, bytes}); });
   for (const auto& message : messages) all.Take(channel.name, bus::Encode(message));
   all.Finish();
   return drawn;
@@ -196,7 +204,7 @@ TEST(FoxgloveMessages, LetTheBoatFloatOnTheWaterOnWhichObstaclesAreDrawn) {
   for (int i = 0; i < 9; ++i) pose.covariance[i][i] = 1.0;
   const auto drawn = Draw(bus::kPose, std::vector{pose});
   ASSERT_FALSE(drawn.empty());
-  ASSERT_EQ(drawn[0].topic, FoxgloveTopic::kTransforms);
+  ASSERT_EQ(drawn[0].topic, viewer::FoxgloveTopic::kTransforms);
   const auto transforms = Parsed<foxglove::FrameTransforms>(drawn[0].bytes);
   ASSERT_EQ(transforms.transforms_size(), 1);
   EXPECT_EQ(transforms.transforms(0).child_frame_id(), "vessel");
@@ -219,8 +227,8 @@ TEST(FoxgloveMessages, JoinThePartsOfTracksOnTheMapAndLeaveOutWhatHasNoPlace) {
   std::vector<std::string> places;
   int num_entities = 0;
   for (const auto& [topic, bytes] : Draw(bus::kTracks, std::vector{part, second})) {
-    if (topic == FoxgloveTopic::kPlaces) places.push_back(Parsed<foxglove::GeoJSON>(bytes).geojson());
-    if (topic == FoxgloveTopic::kTracks) num_entities += Parsed<foxglove::SceneUpdate>(bytes).entities_size();
+    if (topic == viewer::FoxgloveTopic::kPlaces) places.push_back(Parsed<foxglove::GeoJSON>(bytes).geojson());
+    if (topic == viewer::FoxgloveTopic::kTracks) num_entities += Parsed<foxglove::SceneUpdate>(bytes).entities_size();
   }
   EXPECT_EQ(num_entities, 2);
   ASSERT_EQ(places.size(), 1U);
@@ -245,6 +253,79 @@ TEST(FoxgloveMessages, TellAnAlertWhenItChanges) {
   EXPECT_EQ(log.level(), foxglove::Log::ERROR);
   EXPECT_EQ(log.message(), "boat 17 in the guard zone? (active)");
   EXPECT_EQ(Parsed<foxglove::Log>(drawn[1].bytes).level(), foxglove::Log::INFO);
+}
+
+TEST(FoxgloveMessages, TellHowTheBoatMovesFiveTimesASecondAndNothingThatIsNotMeasured) {
+  pose_t pose{};
+  pose.utime_us = 400'000;
+  pose.velocity_map_mps[0] = 3.0;
+  pose.velocity_map_mps[1] = 4.0;
+  pose.heading_source = pose_t::HEADING_HDT;
+  pose.heading_rad = std::numbers::pi / 2;
+  auto next = pose;
+  next.utime_us = 420'000;
+  auto last = pose;
+  last.utime_us = 600'000;
+  last.has_attitude = 1;
+  last.roll_rad = std::numbers::pi / 4;
+  last.heading_source = pose_t::HEADING_NONE;
+  std::vector<viewer::Motion> motions;
+  for (const auto& [topic, bytes] : Draw(bus::kPose, std::vector{pose, next, last})) {
+    if (topic == viewer::FoxgloveTopic::kMotion) motions.push_back(Parsed<viewer::Motion>(bytes));
+  }
+  ASSERT_EQ(motions.size(), 2U);
+  EXPECT_DOUBLE_EQ(motions[0].speed_mps(), 5.0);
+  EXPECT_DOUBLE_EQ(motions[0].heading_deg(), 90.0);
+  EXPECT_TRUE(std::isnan(motions[0].roll_deg()) && std::isnan(motions[0].pitch_deg()));
+  EXPECT_TRUE(std::isnan(motions[1].heading_deg()));
+  EXPECT_DOUBLE_EQ(motions[1].roll_deg(), 45.0);
+}
+
+// Each path of a plot is a topic and its fields.
+void FindTopics(const nlohmann::json& value, std::set<std::string>& found) {
+  const auto take = [&found](const std::string& text) {
+    if (text.starts_with('/')) found.insert(text);
+  };
+  if (value.is_string()) take(value.get<std::string>());
+  if (!value.is_structured()) return;
+  for (const auto& [name, member] : value.items()) {
+    take(name);
+    FindTopics(member, found);
+  }
+}
+
+TEST(FoxgloveLayout, ShowsTopicsThatAreExported) {
+  const auto layout = nlohmann::json::parse(support::ReadFile(support::kSources / "tools/export/lookout.layout.json"));
+  std::set<std::string> panels;
+  const std::function<void(const nlohmann::json&)> take = [&](const nlohmann::json& part) {
+    if (part.is_string()) {
+      panels.insert(part.get<std::string>());
+    } else {
+      take(part.at("first"));
+      take(part.at("second"));
+    }
+  };
+  take(layout.at("layout"));
+  std::set<std::string> configured;
+  for (const auto& [panel, config] : layout.at("configById").items()) configured.insert(panel);
+  EXPECT_EQ(panels, configured);
+
+  std::set<std::string> shown;
+  FindTopics(layout.at("configById"), shown);
+  std::set<std::string> used;
+  for (const auto& path : shown) {
+    const auto dot = path.find('.');
+    const auto topic = path.substr(0, dot);
+    const auto row = std::ranges::find(viewer::kFoxgloveChannels, topic, &viewer::FoxgloveChannel::name);
+    ASSERT_NE(row, viewer::kFoxgloveChannels.end()) << path;
+    used.insert(topic);
+    if (dot == std::string::npos) continue;
+    const auto* type = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(std::string(row->schema));
+    ASSERT_NE(type, nullptr);
+    EXPECT_NE(type->FindFieldByName(path.substr(dot + 1)), nullptr) << path;
+  }
+  // Frames are shown by themselves.
+  EXPECT_EQ(used.size() + 1, viewer::kFoxgloveChannels.size());
 }
 
 }  // namespace

@@ -33,17 +33,19 @@ TEST(Outputs, HoldEachMapInEachFormatOfMaps) {
 }
 
 TEST(Outputs, SayWhereFormatsAndOptionsCanBeGiven) {
-  EXPECT_EQ(FormatNames(), (std::vector<std::string>{"csv", "ply", "pcd", "svg", "geojson", "kml", "gpx"}));
-  EXPECT_EQ(FormatsText(),
-            "csv of every table; ply and pcd of returns; svg of returns, obstacles, tracks, pose and merges; geojson of map, obstacles, tracks and "
-            "pose; kml and "
-            "gpx of obstacles, tracks and pose");
-  EXPECT_EQ(PlacesText(kSpanOption), "csv of every table but map; geojson, kml and gpx of obstacles, tracks and pose");
+  EXPECT_EQ(FormatNames(), (std::vector<std::string>{"csv", "ply", "pcd", "las", "svg", "geojson", "kml", "gpx"}));
+  EXPECT_EQ(
+      FormatsText(),
+      "csv of every table; ply, pcd and las of returns; svg of returns, obstacles, tracks, pose and merges; geojson of map, obstacles, tracks and "
+      "pose; kml and "
+      "gpx of obstacles, tracks and pose");
+  EXPECT_EQ(PlacesText(kSpanOption), "csv of every table but map; pcd and las of returns; geojson, kml and gpx of obstacles, tracks and pose");
   EXPECT_EQ(PlacesText(kNearOption), "csv, geojson, kml and gpx of obstacles, tracks and pose");
   EXPECT_EQ(PlacesText(kScanOption),
-            "csv of merges; ply and pcd of returns; svg of returns, obstacles and merges; geojson, kml and gpx of obstacles and tracks");
+            "csv of merges; ply, pcd and las of returns; svg of returns, obstacles and merges; geojson, kml and gpx of obstacles and tracks");
   EXPECT_EQ(PlacesText(kLastScanOption), "geojson, kml and gpx of obstacles and tracks");
-  EXPECT_EQ(PlacesText(kAllScansOption), "csv of merges");
+  EXPECT_EQ(PlacesText(kAllScansOption), "csv of merges; pcd and las of returns");
+  EXPECT_EQ(PlacesText(kFrameOption), "pcd and las of returns");
   EXPECT_EQ(PlacesText(kConfigOption), "csv and svg of merges");
 }
 
@@ -65,7 +67,12 @@ TEST(Outputs, RefuseWhatTheirRowDoesNotHave) {
             "--scan last is for geojson, kml and gpx of obstacles and tracks only"},
            {{.inputs = {}, .table = "returns", .is_last_scan = true}, ""},  // says what is so without it
            {{.inputs = {}, .table = "tracks", .format = "kml", .is_last_scan = true}, ""},
-           {{.inputs = {}, .table = "merges", .format = "svg", .all_scans = true, .config = "x"}, "--scan all is for csv of merges only"},
+           {{.inputs = {}, .table = "merges", .format = "svg", .all_scans = true, .config = "x"},
+            "--scan all is for csv of merges; pcd and las of returns only"},
+           {{.inputs = {}, .table = "returns", .format = "ply", .all_scans = true}, "--scan all is for csv of merges; "},
+           {{.inputs = {}, .table = "returns", .format = "ply", .frame = CloudFrame::kEarth}, "--frame is for pcd and las of returns only"},
+           {{.inputs = {}, .table = "returns", .format = "las", .output = "x", .all_scans = true, .frame = CloudFrame::kEarth}, ""},
+           {{.inputs = {}, .table = "returns", .format = "las", .all_scans = true}, "--format las of several scans needs --out"},
            {{.inputs = {}, .table = "merges", .all_scans = true, .config = "x"}, ""},
            {{.inputs = {}, .table = "merges"}, "--table merges needs --config: scans are segmented again by it"},
            {{.inputs = {}, .table = "returns", .config = "x"}, "--config is for csv and svg of merges only"},

@@ -169,8 +169,10 @@ TEST_F(SelectionTest, SaysWhatIsWrong) {
   request.span = {kStartUs, std::nullopt};
   request.format = "svg";
   EXPECT_EQ(Export(request), kExitUsage);
-  EXPECT_NE(errors_.find("--from and --to are for csv of every table but map; geojson, kml and gpx of obstacles, tracks and pose only"),
-            std::string::npos)
+  EXPECT_NE(
+      errors_.find(
+          "--from and --to are for csv of every table but map; pcd and las of returns; geojson, kml and gpx of obstacles, tracks and pose only"),
+      std::string::npos)
       << errors_;
   request = {.inputs = {log_}, .table = "alerts", .output = folder_ / "out", .near = ParseCircle("1,2,3")};
   EXPECT_EQ(Export(request), kExitUsage);

@@ -76,6 +76,31 @@ TEST_F(PageParams, RefuseWhatCannotBe) {
   ExpectFault("token_file: ''", "must not be empty");
 }
 
+TEST_F(PageParams, ServeFoxgloveOnlyWhereTold) {
+  EXPECT_FALSE(Load("").foxglove);
+  const auto local = Load("foxglove {}").foxglove;
+  ASSERT_TRUE(local);
+  EXPECT_EQ(local->bind_address, "127.0.0.1");
+  EXPECT_EQ(local->port, 8765);
+  EXPECT_EQ(local->max_clients, 4);
+  EXPECT_TRUE(local->allowed_origins.empty());
+  const auto params = Load("foxglove { bind_address: '0.0.0.0' port: 9000 allowed_origin: 'https://app.foxglove.dev' allowed_origin: 'file://' }");
+  EXPECT_EQ(params.foxglove->allowed_origins, (std::vector<std::string>{"https://app.foxglove.dev", "file://"}));
+  EXPECT_NE(InWords(params).find("# page.txtpb: Foxglove and Lichtblick see it, too: everybody in each network of this computer (0.0.0.0), without a "
+                                 "password, TCP port 9000\n"),
+            std::string::npos)
+      << InWords(params);
+}
+
+TEST_F(PageParams, RefuseWhatCannotBeOfFoxglove) {
+  ExpectFault("foxglove { bind_address: 'lo' }", "foxglove.bind_address: 'lo' is no numeric address");
+  ExpectFault("foxglove { port: 7668 }", "foxglove.port: must differ from port");
+  ExpectFault("foxglove { port: 0 }", "port");
+  ExpectFault("foxglove { max_clients: 17 }", "max_clients");
+  for (const char* origin : {"*", "", "app.foxglove.dev", "https://app.foxglove.dev/", "https://*.foxglove.dev", "://a", "http://a b"})
+    ExpectFault("foxglove { allowed_origin: '" + std::string(origin) + "' }", "is no origin: https://HOST or http://HOST:PORT, without a path");
+}
+
 TEST_F(PageParams, FollowTheRecorderUnlessTold) {
   EXPECT_TRUE(Load("").recorder_folder.has_value());
   EXPECT_FALSE(Load("follows_recorder: false").recorder_folder.has_value());

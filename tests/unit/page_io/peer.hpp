@@ -176,9 +176,16 @@ class Browser : public Peer {
     if (answer_.starts_with("HTTP/1.1 101")) hello_ = Next();
   }
 
+  /// One of another protocol. @param origin  empty: none, as of a program
+  Browser(int port, int buffer_bytes, const std::string& origin, const std::string& protocol) : Peer(port, buffer_bytes) {
+    answer_ = Ask(Upgrade(origin, protocol));
+    if (answer_.starts_with("HTTP/1.1 101")) hello_ = Next();
+  }
+
   const std::string& answer() const { return answer_; }
   const FromServer& hello() const { return hello_; }
 
+  bool SayBinary(const std::string& bytes) { return Write(ClientFrame(0x82, bytes, bytes.size())); }
   bool Say(const std::string& text) { return Write(ClientFrame(0x81, text, text.size())); }
   void Watch(const std::string& channels) { Say(R"({"op":"watch","channels":[)" + channels + "]}"); }
   void Confirm(int num_frames) { Say(R"({"op":"got","frames":)" + std::to_string(num_frames) + "}"); }

@@ -35,7 +35,7 @@ final class Texts {
     return probability >= 0f && probability <= 1f ? (int) Math.floor(100.0 * probability) + "%" : "-";
   }
 
-  /** As tools/export/words.hpp. */
+  /** As common/messages/words.hpp. */
   static String confidence(obstacle_t obstacle) {
     String word = obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? "sure" : "tentative";
     return obstacle.kind == obstacle_t.KIND_LAND ? "land" + (word.equals("sure") ? "" : " ?") : word;

@@ -1,4 +1,4 @@
-// What a log says, as the messages that Foxglove and Lichtblick draw.
+// What a look-out says, live or in a log, as the messages that Foxglove and Lichtblick draw.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ class Descriptor;
 class Message;
 }  // namespace google::protobuf
 
-namespace lookout::exporter {
+namespace lookout::viewer {
 
-enum class FoxgloveTopic { kPoints, kObstacles, kTracks, kPlaces, kLocation, kTransforms, kLog };
+enum class FoxgloveTopic { kPoints, kObstacles, kTracks, kPlaces, kLocation, kMotion, kTransforms, kLog };
 
 struct FoxgloveChannel {
   FoxgloveTopic topic;
@@ -39,8 +39,12 @@ inline constexpr std::array kFoxgloveChannels{FoxgloveChannel{FoxgloveTopic::kPo
                                               FoxgloveChannel{FoxgloveTopic::kTracks, "/tracks", "foxglove.SceneUpdate"},
                                               FoxgloveChannel{FoxgloveTopic::kPlaces, "/tracks/map", "foxglove.GeoJSON"},
                                               FoxgloveChannel{FoxgloveTopic::kLocation, "/location", "foxglove.LocationFix"},
+                                              FoxgloveChannel{FoxgloveTopic::kMotion, "/motion", "lookout.viewer.Motion"},
                                               FoxgloveChannel{FoxgloveTopic::kTransforms, "/tf", "foxglove.FrameTransforms"},
                                               FoxgloveChannel{FoxgloveTopic::kLog, "/alerts", "foxglove.Log"}};
+
+/// Whether messages of the topic are drawn out of those of a channel of the bus.
+bool IsDrawnFrom(FoxgloveTopic topic, std::string_view channel);
 
 /// A FileDescriptorSet with the files of a schema and all that these need, each behind what it needs. @throws std::logic_error for an unknown one
 std::string FoxgloveDescriptors(std::string_view schema);
@@ -50,9 +54,11 @@ class FoxgloveMessages {
  public:
   using Write = std::function<void(FoxgloveTopic topic, const std::string& bytes)>;
 
-  explicit FoxgloveMessages(Write write) : write_(std::move(write)) {}
+  /// @param boat  nullopt: the boat of the last RUN_INFO; else RUN_INFO changes nothing
+  explicit FoxgloveMessages(Write write, std::optional<config::BoatFacts> boat = std::nullopt)
+      : write_(std::move(write)), boat_(std::move(boat)), is_boat_given_(boat_.has_value()) {}
 
-  /// Takes a message of a log. What does not decode, or contradicts itself, gives nothing.
+  /// Takes a message of the bus. What does not decode, or contradicts itself, gives nothing.
   void Take(std::string_view channel, Bytes bytes);
 
   /// The last scan, where its last part did not come.
@@ -72,6 +78,7 @@ class FoxgloveMessages {
 
   Write write_;
   std::optional<config::BoatFacts> boat_;
+  bool is_boat_given_;
   // The cloud under way: of one scan, part by part.
   std::optional<std::int64_t> cloud_seq_;
   std::int64_t cloud_utime_us_ = 0;
@@ -82,4 +89,4 @@ class FoxgloveMessages {
   std::int64_t num_unused_ = 0;
 };
 
-}  // namespace lookout::exporter
+}  // namespace lookout::viewer

@@ -1,4 +1,4 @@
-#include "tools/export/foxglove_messages.hpp"
+#include "common/viewer/foxglove_messages.hpp"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/descriptor.pb.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -13,17 +14,18 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
+#include "common/core/append_bytes.hpp"
 #include "common/core/frames.hpp"
 #include "common/core/printable.hpp"
 #include "common/messages/checks.hpp"
 #include "common/messages/pose_message.hpp"
-#include "tools/export/boat_of_log.hpp"
-#include "tools/export/little_endian.hpp"
-#include "tools/export/returns.hpp"
-#include "tools/export/schema/foxglove.pb.h"
-#include "tools/export/words.hpp"
+#include "common/messages/returns.hpp"
+#include "common/messages/words.hpp"
+#include "common/viewer/boat_of_run_info.hpp"
+#include "common/viewer/foxglove.pb.h"
+#include "common/viewer/motion.pb.h"
 
-namespace lookout::exporter {
+namespace lookout::viewer {
 
 namespace {
 
@@ -147,8 +149,28 @@ nlohmann::ordered_json NumberOrNull(double value) { return std::isfinite(value) 
 
 }  // namespace
 
+bool IsDrawnFrom(FoxgloveTopic topic, std::string_view channel) {
+  switch (topic) {
+    case FoxgloveTopic::kPoints:
+      return channel == bus::kLidarScan.name;
+    case FoxgloveTopic::kObstacles:
+      return channel == bus::kObstacles.name;
+    case FoxgloveTopic::kTracks:
+    case FoxgloveTopic::kPlaces:
+      return channel == bus::kTracks.name;
+    case FoxgloveTopic::kLocation:
+    case FoxgloveTopic::kMotion:
+      return channel == bus::kPose.name;
+    case FoxgloveTopic::kTransforms:
+      return channel == bus::kPose.name || channel == bus::kLidarScan.name;
+    case FoxgloveTopic::kLog:
+      return channel == bus::kAlerts.name;
+  }
+  return false;
+}
+
 std::string FoxgloveDescriptors(std::string_view schema) {
-  const auto* const type = foxglove::PointCloud::descriptor()->file()->pool()->FindMessageTypeByName(std::string(schema));
+  const auto* const type = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(std::string(schema));
   if (type == nullptr) throw std::logic_error("no schema " + std::string(schema));
   google::protobuf::FileDescriptorSet set;
   std::set<std::string> taken;
@@ -167,7 +189,8 @@ void FoxgloveMessages::Take(std::string_view channel, Bytes bytes) {
   if (channel == bus::kObstacles.name) return take(bus::Decode<obstacles_t>(bytes), &FoxgloveMessages::OnObstacles);
   if (channel == bus::kTracks.name) return take(bus::Decode<tracks_t>(bytes), &FoxgloveMessages::OnTracks);
   if (channel == bus::kRunInfo.name) {
-    TakeRunInfo(bytes, boat_);
+    if (is_boat_given_) return;
+    if (const auto info = bus::Decode<run_info_t>(bytes)) TakeBoat(*info, boat_);
   } else if (channel == bus::kPose.name) {
     const auto pose = bus::Decode<pose_t>(bytes);
     if (pose && UtimeFromWire(pose->utime_us)) return OnPose(*pose);
@@ -187,7 +210,7 @@ void FoxgloveMessages::OnScan(const lidar_scan_t& message) {
     cloud_utime_us_ = message.utime_us;
   }
   cloud_part_ = message.part_index;
-  ForEachReturn(message, nullptr, [this](const Return& one) {
+  messages::ForEachReturn(message, nullptr, [this](const messages::Return& one) {
     for (int axis = 0; axis < 3; ++axis) AppendFloat(one.p_lidar_m[axis], points_);
     points_.push_back(static_cast<char>(one.reflectivity));
     points_.push_back(static_cast<char>(one.ring));
@@ -312,7 +335,18 @@ void FoxgloveMessages::OnPose(const pose_t& message) {
                  transforms);
     Send(FoxgloveTopic::kTransforms, transforms);
   }
-  if (message.utime_us % kLocationPeriodUs != 0 || !std::isfinite(message.latitude_deg) || !std::isfinite(message.longitude_deg)) return;
+  if (message.utime_us % kLocationPeriodUs != 0) return;
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  Motion motion;
+  SetTime(message.utime_us, motion.mutable_timestamp());
+  motion.set_velocity_east_mps(message.velocity_map_mps[0]);
+  motion.set_velocity_north_mps(message.velocity_map_mps[1]);
+  motion.set_speed_mps(std::sqrt(Eigen::Vector2d(message.velocity_map_mps[0], message.velocity_map_mps[1]).squaredNorm()));
+  motion.set_heading_deg(message.heading_source == pose_t::HEADING_NONE ? kUnknown : RadToDeg(message.heading_rad));
+  motion.set_roll_deg(message.has_attitude != 0 ? RadToDeg(message.roll_rad) : kUnknown);
+  motion.set_pitch_deg(message.has_attitude != 0 ? RadToDeg(message.pitch_rad) : kUnknown);
+  Send(FoxgloveTopic::kMotion, motion);
+  if (!std::isfinite(message.latitude_deg) || !std::isfinite(message.longitude_deg)) return;
   foxglove::LocationFix fix;
   SetTime(message.utime_us, fix.mutable_timestamp());
   fix.set_frame_id("vessel");
@@ -349,4 +383,4 @@ void FoxgloveMessages::OnAlerts(const alerts_t& message) {
   told_ = std::move(now);
 }
 
-}  // namespace lookout::exporter
+}  // namespace lookout::viewer

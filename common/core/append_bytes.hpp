@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace lookout::exporter {
+namespace lookout {
 
 /// The lowest bytes of a number, the lowest first.
 inline void AppendLittleEndian(std::uint64_t value, int num_bytes, std::string& text) {
@@ -15,4 +15,4 @@ inline void AppendLittleEndian(std::uint64_t value, int num_bytes, std::string& 
 /// IEEE 754, 4 bytes.
 inline void AppendFloat(double value, std::string& text) { AppendLittleEndian(std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4, text); }
 
-}  // namespace lookout::exporter
+}  // namespace lookout

@@ -10,11 +10,11 @@
 #include "common/core/angles.hpp"
 #include "common/core/frames.hpp"
 #include "common/messages/pieces.hpp"
+#include "common/messages/words.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/segments_t.hpp"
-#include "tools/export/words.hpp"
 
-namespace lookout::exporter {
+namespace lookout::messages {
 
 struct Return {
   std::int64_t utime_us;  // at which its laser fired, nearest microsecond
@@ -39,7 +39,7 @@ template <typename Use>
 void ForEachReturn(const lidar_scan_t& scan, const segments_t* labels, Use use) {
   const auto num_rings = static_cast<std::size_t>(scan.num_rings);
   const auto num_returns = static_cast<std::size_t>(scan.num_returns);
-  const auto piece = labels != nullptr ? messages::PiecesOf(*labels) : std::vector<std::int16_t>();
+  const auto piece = labels != nullptr ? PiecesOf(*labels) : std::vector<std::int16_t>();
   std::size_t cell = 0;
   for (std::size_t column = 0; column < static_cast<std::size_t>(scan.num_columns); ++column) {
     for (std::size_t ring = 0; ring < num_rings; ++ring) {
@@ -72,4 +72,4 @@ void ForEachReturn(const lidar_scan_t& scan, const segments_t* labels, Use use) 
   }
 }
 
-}  // namespace lookout::exporter
+}  // namespace lookout::messages
