@@ -398,7 +398,7 @@ TEST(Recordings, GiveTheirScansAndEveryReturn) {
   };
   for (const auto& expected : {Expected{"mrpt_sample_velodyne_vlp16_gps.pcap", 3, 2}, Expected{"einride_vlp16_1000pkt.pcap", 12, 2},
                                Expected{"rlu_vlp16_example.pcap", 0, 2}}) {
-    const auto file = kRecordings / "lidar" / expected.file;
+    const auto file = kRecordings / "vlp16" / expected.file;
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recording at " << file;
     const auto count = CountScans(file);
     EXPECT_EQ(count.num_full, expected.num_full) << file;

@@ -172,7 +172,7 @@ TEST(NameOfForeignPayloadRecordings, NameAnOusterAndLeaveTheHdl32eToThePacketInt
 }
 
 TEST(NameOfForeignPayloadRecordings, NameNoPacketOfARealVlp16) {
-  const auto folder = Recording("lidar");
+  const auto folder = Recording("vlp16");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "recordings of a VLP-16 are not at hand";
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
