@@ -11,6 +11,7 @@ fault() { echo "FAILED: $*"; num_faults=$((num_faults + 1)); }
 
 declare -A options_of
 for program in "$bin"/lookout-*; do
+  if [ -L "$program" ]; then continue; fi  # an old name
   name=$(basename "$program")
   help=$("$program" --help 2>&1)
   # lookout-log has commands with options of their own.

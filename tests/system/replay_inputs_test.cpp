@@ -33,7 +33,7 @@ struct RealCapture {
 class ReplayOfRealCaptures : public Replay, public ::testing::WithParamInterface<RealCapture> {};
 
 TEST_P(ReplayOfRealCaptures, CutsTurnsAndGivesTheSameBytesEachTime) {
-  const auto capture = data_ / "lidar" / GetParam().file;
+  const auto capture = data_ / "vlp16" / GetParam().file;
   if (!fs::exists(capture)) GTEST_SKIP() << "no recording at " << capture;
   ExpectSameBytes(capture.string());
   EXPECT_EQ(CountTurns("first"), std::pair(GetParam().num_whole, GetParam().num_partial));

@@ -116,7 +116,7 @@ TEST_F(SameBytes, OfSimulatedScenesByBothMethodsWhateverTheProcessor) {
 }
 
 TEST_F(SameBytes, OfRecordingsWhateverTheProcessor) {
-  if (!fs::exists(data_ / "lidar")) GTEST_SKIP() << "no recordings at " << data_;
+  if (!fs::exists(data_ / "vlp16")) GTEST_SKIP() << "no recordings at " << data_;
   if (!SwitchesTheCLibrary()) GTEST_SKIP() << "the C library has no other functions for an older processor than this one";
   const std::string catabot = kCatabotConfig.string();
   for (const char* folder : {"lidar", "nmea"}) {

@@ -284,5 +284,21 @@ TEST(Boat, BoxesAreNotTurnedInsideOut) {
   EXPECT_NEAR(boat.T_vessel_lidar.translation().x(), 0.5, 1e-12);
 }
 
+TEST(OldNames, OfTheLidarsConfigAreReadWhileTheNewOneIsNotThere) {
+  const support::TempDir folder;
+  support::WriteFile(folder / "vlp16.txtpb", "source: LOG cut_azimuth_deg: 10\n");
+  Lidar message;
+  LoadText(folder / "lidar.txtpb", message);
+  EXPECT_EQ(message.cut_azimuth_deg(), 10.0);
+  EXPECT_EQ(OldConfigFile(folder / "lidar.txtpb"), folder / "vlp16.txtpb");
+  EXPECT_NE(EffectiveTextOfFile(folder / "vlp16.txtpb").find("cut_azimuth_deg: 10"), std::string::npos);
+  support::WriteFile(folder / "lidar.txtpb", "source: LOG cut_azimuth_deg: 20\n");
+  Lidar renamed;
+  LoadText(folder / "lidar.txtpb", renamed);
+  EXPECT_EQ(renamed.cut_azimuth_deg(), 20.0);
+  EXPECT_FALSE(OldConfigFile(folder / "lidar.txtpb"));
+  EXPECT_FALSE(OldConfigFile(folder / "segmenter.txtpb"));
+}
+
 }  // namespace
 }  // namespace lookout::config
