@@ -61,7 +61,8 @@ int CompareSensors(const ComparisonOptions& options) {
   }
   io::CatchStopSignals();
   Table table = MakeTable();
-  TableFiles files(options.csv_folder, {{"sensors", "", table}}, options.is_forced);  // before all work
+  const std::string name = options.scenes == std::vector<std::string>{"families"} ? "sensors_families" : "sensors";
+  TableFiles files(options.csv_folder, {{name, "", table}}, options.is_forced);  // before all work
   FillBlocksOf(options.block_files, {});
   std::int64_t num_scans = 0;
   for (const auto& lidar : options.lidars) {
@@ -85,7 +86,7 @@ int CompareSensors(const ComparisonOptions& options) {
     AddRows(lidar, size, results, table);
     std::cerr << fmt::format("lookout-eval: {} done\n", lidar);
   }
-  const std::vector<NamedTable> tables{{"sensors", "By sensor: mean over the scenes; lost: things of 5 returns or more, over all scans", table}};
+  const std::vector<NamedTable> tables{{name, "By sensor: mean over the scenes; lost: things of 5 returns or more, over all scans", table}};
   PrintTables(tables, std::cout);
   files.Commit(tables);
   const auto scope = fmt::format("Own simulator: {} scans of {} scenes, {} seeds each from {} on, {:.1f} s a seed, by each head; times on {}.",
