@@ -11,8 +11,8 @@
 #include "lab/sim/rotor.hpp"
 #include "lab/sim/scene.hpp"
 #include "lab/sim/shots.hpp"
-#include "services/vlp16/core/model.hpp"
-#include "services/vlp16/core/packet_format.hpp"
+#include "services/lidar/core/vlp16/model.hpp"
+#include "services/lidar/core/vlp16/packet_format.hpp"
 
 namespace lookout::sim {
 
