@@ -80,7 +80,8 @@ HeadScan HeadLidar::Next() {
 }
 
 void HeadLidar::FireColumn(double time_s, double column_azimuth_rad, double rate_radps, HeadScan& made) {
-  auto& [head, columns, parts] = made.scan;
+  auto& head = made.scan.head;
+  auto& columns = made.scan.columns;
   shots_.MoveTo(time_s);
   columns.azimuth_rad.push_back(static_cast<float>(column_azimuth_rad));
   const auto time_ns = static_cast<std::int32_t>((start_ + ToNanoseconds(time_s) - head.time) / nanoseconds(1));

@@ -22,7 +22,7 @@ std::vector<HeadBeam> BeamsOfVlp32c() {
   std::vector<HeadBeam> beams;
   beams.reserve(kElevationDeg.size());
   for (std::size_t laser = 0; laser < kElevationDeg.size(); ++laser) {
-    beams.push_back({kElevationDeg[laser], kOffsetDeg[laser], 2.304 * static_cast<double>(laser / 2)});
+    beams.push_back({kElevationDeg[laser], kOffsetDeg[laser], 2.304 * std::floor(static_cast<double>(laser) / 2.0)});
   }
   return LowestFirst(std::move(beams));
 }
@@ -32,7 +32,7 @@ std::vector<HeadBeam> BeamsOfHdl32e() {
   std::vector<HeadBeam> beams;
   for (int laser = 0; laser < 32; ++laser) {
     const double first_deg = laser % 2 == 0 ? -92.0 / 3.0 : -28.0 / 3.0;
-    beams.push_back({first_deg + 4.0 / 3.0 * (laser / 2), 0.0, 1.152 * laser});
+    beams.push_back({first_deg + 4.0 / 3.0 * std::floor(laser / 2.0), 0.0, 1.152 * laser});
   }
   return LowestFirst(std::move(beams));
 }

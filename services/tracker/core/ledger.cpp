@@ -99,8 +99,8 @@ void Ledger::FindLone(std::span<const Piece> pieces) {
   std::ranges::sort(segments);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (pieces[i].places_m.size() > 1) continue;
-    const auto same = std::ranges::equal_range(segments, pieces[i].segment);
-    is_lone_[i] = same.size() == 1 ? 1 : 0;
+    const auto [first, last] = std::equal_range(segments.begin(), segments.end(), pieces[i].segment);
+    is_lone_[i] = last - first == 1 ? 1 : 0;
   }
 }
 
