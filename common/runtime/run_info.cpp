@@ -9,6 +9,7 @@
 #include <gnu/libc-version.h>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "common/bus/schema.hpp"
 #include "common/config/boat.hpp"
@@ -31,18 +32,30 @@ std::vector<std::string> ConfigFiles(const std::filesystem::path& config_folder)
   return names;
 }
 
-// The makers' files about a lidar's beams (beam_file in lidar.txtpb): without them its packets cannot be read.
-std::vector<std::filesystem::path> BeamFiles(const std::filesystem::path& config_folder) {
-  constexpr std::uintmax_t kMaxBytes = 64 << 10;
-  constexpr std::size_t kMaxFiles = 4;
+// The makers' files about a lidar's beams (beam_file in lidar.txtpb): without them its packets cannot be read. Other files may lie in the folder,
+// too: what cannot be read, or does not fit into a message, is left out.
+void AddBeamFiles(const std::filesystem::path& config_folder, run_info_t& message) {
+  constexpr std::size_t kMaxTextBytes = 100'000;  // of all files: RUN_INFO is one message
+  std::size_t num_bytes = 0;
+  for (const auto& text : message.file_text) num_bytes += text.size();
+  std::error_code error;
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(config_folder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(config_folder, error)) {
     const auto extension = entry.path().extension();
-    if (entry.is_regular_file() && (extension == ".json" || extension == ".csv") && entry.file_size() <= kMaxBytes) files.push_back(entry.path());
+    if (extension == ".json" || extension == ".csv") files.push_back(entry.path());
   }
   std::ranges::sort(files);
-  if (files.size() > kMaxFiles) files.resize(kMaxFiles);
-  return files;
+  for (const auto& file : files) {
+    try {
+      auto text = config::ReadConfigFile(file);
+      if (num_bytes + text.size() > kMaxTextBytes) continue;
+      num_bytes += text.size();
+      message.file_name.push_back(file.filename().string());
+      message.file_text.push_back(std::move(text));
+    } catch (const config::ConfigError&) {
+      continue;
+    }
+  }
 }
 
 // Of the hundred and more that an x86 names.
@@ -113,16 +126,13 @@ run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& 
     message.file_name.push_back(name);
   }
   faults.ThrowIfAny();
-  for (const auto& file : BeamFiles(config_folder)) {
-    message.file_name.push_back(file.filename().string());
-    message.file_text.push_back(config::ReadConfigFile(file));
-  }
   message.file_name.emplace_back("machine.txt");
   message.file_text.push_back(MachineText());
   for (const auto& type : bus::TypeTexts()) {
     message.file_name.push_back(type.file_name);
     message.file_text.push_back(type.text);
   }
+  AddBeamFiles(config_folder, message);
   message.num_files = static_cast<std::int32_t>(message.file_name.size());
   return message;
 }

@@ -44,7 +44,10 @@
 namespace lookout::eval {
 namespace {
 
-// Of the processor, as Linux names it.
+constexpr const char* kFamilies = "families";
+
+}  // namespace
+
 std::string Computer() {
   std::ifstream cpuinfo("/proc/cpuinfo");
   std::string model = "unknown processor";
@@ -55,10 +58,6 @@ std::string Computer() {
   }
   return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, one used";
 }
-
-constexpr const char* kFamilies = "families";
-
-}  // namespace
 
 std::set<std::string> LeftOutOf(const ComparisonOptions& options) {
   std::set<std::string> families;
@@ -82,18 +81,6 @@ constexpr const char* kSecondWorld = "second world";
 std::unique_ptr<Method> LeftOutOfCaptures(const ComparisonOptions& options, const Boat& boat) {
   const auto evidence = LeaveOutEvidence(options.weights_folder, {}).FileOf(kSecondWorld);
   return std::make_unique<SegmenterMethod>(std::string(kLeftOut), WithEvidence(boat, evidence));
-}
-
-// Methods by name and group; the boat over time stands behind ours.
-Methods MethodsOf(const ComparisonOptions& options, const Boat& boat, const std::function<std::unique_ptr<Method>()>& make_over_time) {
-  auto names = options.methods;
-  const bool is_over_time = std::ranges::any_of(names, [](const auto& name) { return name == "all" || name == "ours" || name == kOverTime; });
-  std::erase(names, kOverTime);
-  auto methods = MakeMethods(boat.segmenter, names);
-  if (!is_over_time) return methods;
-  const auto behind_ours = std::ranges::find_if_not(methods, [](const auto& method) { return method->name().starts_with("ours"); });
-  methods.insert(behind_ours, make_over_time());
-  return methods;
 }
 
 // The column of the tables in which recordings stand.
@@ -231,9 +218,20 @@ void RefuseIfThere(const std::filesystem::path& folder, const char* ending, int 
 
 }  // namespace
 
+Methods MethodsOf(const ComparisonOptions& options, const Boat& boat, const std::function<std::unique_ptr<Method>()>& make_over_time) {
+  auto names = options.methods;
+  const bool is_over_time = std::ranges::any_of(names, [](const auto& name) { return name == "all" || name == "ours" || name == kOverTime; });
+  std::erase(names, kOverTime);
+  auto methods = MakeMethods(boat.segmenter, names);
+  if (!is_over_time) return methods;
+  const auto behind_ours = std::ranges::find_if_not(methods, [](const auto& method) { return method->name().starts_with("ours"); });
+  methods.insert(behind_ours, make_over_time());
+  return methods;
+}
+
 RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
   const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
-  RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds};
+  RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds, options.lidars};
   for (const auto& scene : options.scenes) {
     if (scene != "all" && scene != kFamilies) {
       plan.scenes.push_back(scene);

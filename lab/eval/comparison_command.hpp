@@ -4,11 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "lab/eval/methods/method.hpp"
+#include "lab/eval/methods/render.hpp"
 #include "lab/eval/methods/run_plan.hpp"
 
 namespace lookout::eval {
@@ -27,6 +31,7 @@ struct ComparisonOptions {
   int num_seeds = 20;
   bool is_tuning = false;  // methods are shown on seeds of tuning, and no file is written
   double seconds = 2.0;
+  std::vector<std::string> lidars;   // heads in place of the scenes'; empty = theirs
   std::vector<std::string> methods;  // MakeMethods
   std::vector<std::string> sweeps;   // ParseSweep
   std::vector<int> tests;            // RunPaperTest
@@ -42,6 +47,12 @@ struct ComparisonOptions {
 /// Scenes, seeds and length that are asked for; "all" and "families" are spelt out, and where no first seed is asked for, it is the first of the
 /// range.
 RunPlan PlanOf(const ComparisonOptions& options, SeedUse use);
+
+/// The processor, as Linux names it.
+std::string Computer();
+
+/// Methods by name and group; the boat over time stands behind ours.
+Methods MethodsOf(const ComparisonOptions& options, const Boat& boat, const std::function<std::unique_ptr<Method>()>& make_over_time);
 
 /// Names of the families that are left out. @throws std::invalid_argument for one that is not known
 std::set<std::string> LeftOutOf(const ComparisonOptions& options);

@@ -16,9 +16,11 @@
 #include "common/runtime/version.hpp"
 #include "lab/eval/comparison_command.hpp"
 #include "lab/eval/log_command.hpp"
+#include "lab/eval/sensor_command.hpp"
 #include "lab/eval/tracks/alert_command.hpp"
 #include "lab/eval/tracks/track_autoferry.hpp"
 #include "lab/eval/tracks/track_command.hpp"
+#include "lab/sim/heads.hpp"
 
 namespace {
 
@@ -90,6 +92,10 @@ Options ParseOptions(int argc, char** argv) {
   needs_config(app.add_flag("--tuning", comparison.is_tuning, "methods on seeds of tuning; no file is written"));
   auto* seconds = needs_config(app.add_option("--seconds", comparison.seconds, "of each scene and seed (with --tracks 20, with --alerts 60)"));
   seconds->check(CLI::Range(0.3, 3600.0))->capture_default_str();
+  needs_config(
+      app.add_option("--lidar", comparison.lidars,
+                     "heads that look at the scenes (lookout-sim --lidar), or all: methods in a table by sensor; with --tracks each a world"))
+      ->delimiter(',');
   needs_config(app.add_option("--methods", comparison.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
       ->delimiter(',');
   needs_config(app.add_option("--sweep", comparison.sweeps, "FIELD=FROM:TO:STEP, a number of the segmenter's config (e1, e2, e3 for short)"));
@@ -127,6 +133,10 @@ Options ParseOptions(int argc, char** argv) {
   ablation->needs(tracks)->excludes(left_out);
   alerts->excludes(left_out);
   autoferry->excludes(left_out);
+  auto* lidar = app.get_option("--lidar");
+  for (const char* other : {"--captures", "--leave-out", "--sweep", "--test", "--points", "--html", "--pictures", "--alerts"}) {
+    lidar->excludes(app.get_option(other));
+  }
   for (const char* other : {"--methods", "--sweep", "--test", "--points", "--html", "--pictures"}) {
     tracks->excludes(app.get_option(other));
     alerts->excludes(app.get_option(other));
@@ -154,6 +164,8 @@ Options ParseOptions(int argc, char** argv) {
     }
     if (options.has_tracks && seconds->count() == 0) comparison.seconds = kSecondsOfTracks;
     if (options.has_alerts && seconds->count() == 0) comparison.seconds = kSecondsOfAlerts;
+    if (comparison.lidars == std::vector<std::string>{"all"}) comparison.lidars = sim::HeadNames();
+    eval::CheckLidars(comparison.lidars);
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
   }
@@ -182,7 +194,7 @@ int main(int argc, char** argv) try {
     return eval::EvaluateTracks(
         {RunsOf(comparison), options.captures, comparison.lost_file, options.has_ablation, eval::LeftOutOf(comparison), comparison.weights_folder});
   }
-  return eval::CompareMethods(comparison);
+  return comparison.lidars.empty() ? eval::CompareMethods(comparison) : eval::CompareSensors(comparison);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;

@@ -20,7 +20,8 @@ namespace lookout::fit {
 namespace {
 
 eval::RunPlan PlanOf(const Options& options) {
-  eval::RunPlan plan{{}, options.first_seed, options.num_seeds, options.seconds};
+  eval::RunPlan plan{{}, options.first_seed, options.num_seeds, options.seconds, options.lidars};
+  eval::CheckLidars(options.lidars);
   for (const auto& scene : options.scenes) {
     if (scene != "families" && scene != "all") {
       plan.scenes.push_back(scene);

@@ -12,6 +12,7 @@ struct Options {
   std::string command;  // as it was given
   std::filesystem::path config_folder;
   std::vector<std::string> scenes;
+  std::vector<std::string> lidars;  // RunPlan::lidars
   std::vector<std::string> without;
   std::vector<std::string> hold_out;
   std::uint64_t first_seed = 1;

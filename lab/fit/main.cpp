@@ -30,6 +30,8 @@ fit::Options ParseOptions(int argc, char** argv) {
   app.add_option("--scenes", options.scenes, "families, all (scenes that are no families), or names of scenes or .txtpb files")
       ->delimiter(',')
       ->required();
+  app.add_option("--lidar", options.lidars, "heads that look at the scenes, in turn from seed to seed (default: as the scenes say, vlp16)")
+      ->delimiter(',');
   app.add_option("--without", options.without, "names of scenes that are not fitted on; their IoU is shown beside that of the others")
       ->delimiter(',');
   app.add_option("--hold-out", options.hold_out, "names of scenes that only say when trees are enough: where their loss is least")->delimiter(',');

@@ -18,7 +18,7 @@ struct Sign {
 
 // Of two pieces: more between them, less likely one.
 constexpr std::array<Sign, 7> kPairSigns{
-    {{"gap_m", -1}, {"free_gap_m", -1}, {"gap_columns", -1}, {"radial_gap_m", -1}, {"ring_gap", -1}, {"seen_through", -1}, {"faced", +1}}};
+    {{"gap_m", -1}, {"free_gap_m", -1}, {"gap_deg", -1}, {"radial_gap_m", -1}, {"rise_gap_deg", -1}, {"seen_through", -1}, {"faced", +1}}};
 constexpr std::array<Sign, 1> kLandSigns{{{"length_m", +1}}};
 constexpr std::array<Sign, 2> kThingSigns{{{"returns", +1}, {"crowd", -1}}};
 

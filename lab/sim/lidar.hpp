@@ -8,10 +8,9 @@
 #include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
-#include "lab/sim/clutter.hpp"
-#include "lab/sim/random.hpp"
-#include "lab/sim/ray_caster.hpp"
+#include "lab/sim/rotor.hpp"
 #include "lab/sim/scene.hpp"
+#include "lab/sim/shots.hpp"
 #include "services/lidar/core/vlp16/model.hpp"
 #include "services/lidar/core/vlp16/packet_format.hpp"
 
@@ -59,62 +58,16 @@ class Lidar {
   LidarPacket Next();
 
   /// Azimuth of the rotor, clockwise, not wrapped. It turns at the mean rate with slow variations about it, so errors do not add up.
-  double AzimuthAt(double time_s) const;
+  double AzimuthAt(double time_s) const { return rotor_.AzimuthAt(time_s); }
 
  private:
-  struct Measurement {
-    std::uint16_t range_2mm = 0;  // 0 = no return
-    std::uint8_t reflectivity = 0;
-    int object_id = kNoObject;
-    ReturnReason reason = ReturnReason::kStray;
-    double true_range_m = 0.0;
-    double power = 0.0;  // relative to that of a white surface at 1 m
-  };
-  struct Shot {
-    Measurement strongest;
-    Measurement last;
-  };
-  // Echoes of one shot that were seen.
-  struct Seen {
-    static constexpr int kMaxCount = 8;
-    int count = 0;
-    std::array<Measurement, kMaxCount> measurement;
-
-    void Add(const Measurement& seen) {
-      if (seen.range_2mm != 0) measurement[static_cast<std::size_t>(count++)] = seen;
-    }
-  };
-
-  struct RayPair {  // one ray in two frames
-    Ray vessel;
-    Ray map;
-  };
-  RayPair RayOf(double origin_height_m, double azimuth_rad, double elevation_rad, const Eigen::Isometry3d& T_map_vessel) const;
-  Shot Fire(const RayPair& ray, double time_s);
-  Echoes Trace(const RayPair& ray, double max_range_m, double time_s);
-  void TraceWater(const Ray& ray, double max_range_m, Seen& seen);
-  Shot Choose(const Seen& seen) const;
   bool FiresFrom(std::int64_t sequence) const;
-  Measurement Measure(const Echo& echo);
-  Measurement ToMeasurement(double range_m, double brightness, int object_id, ReturnReason reason);
-  Measurement Stray(double max_range_m);
 
   LidarParams params_;
   const Effects& effects_;
-  const Sea& sea_;
   const vlp16::Beams& beams_;
-  OwnMotion own_motion_;
-  double reference_point_above_water_m_;
-  Eigen::Isometry3d T_vessel_lidar_;
-  std::vector<SceneObject> own_hull_;
-  RayCaster own_caster_;  // vessel frame
-  BeamWidth beam_width_;
-  RayCaster caster_;  // map frame
-  Clutter clutter_;
-  Random random_;
-  std::vector<Wave> rotor_rad_;
-  double rotor_phase_rad_ = 0.0;
-  double rotor_rate_radps_ = 0.0;
+  Rotor rotor_;
+  Shots shots_;
   Utime start_;
   std::int64_t next_sequence_ = 0;  // to be fired, in sequence periods since the start
 };

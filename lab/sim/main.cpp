@@ -9,7 +9,9 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "common/config/text_config.hpp"
@@ -19,6 +21,9 @@
 #include "common/runtime/process.hpp"
 #include "common/runtime/progress.hpp"
 #include "lab/sim/faulty_network.hpp"
+#include "lab/sim/head_simulation.hpp"
+#include "lab/sim/heads.hpp"
+#include "lab/sim/log_sink.hpp"
 #include "lab/sim/options.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "lab/sim/simulation.hpp"
@@ -67,12 +72,59 @@ sim::SimulationParams ToParams(const sim::Options& options) {
   return params;
 }
 
+// @throws std::invalid_argument where packets were asked of a head that has none here, or the other way round
+void CheckOutputs(const sim::Options& options, const sim::Head* head) {
+  if (head == nullptr) {
+    if (!options.log_file.empty())
+      throw std::invalid_argument("--out: is for heads without packets (--lidar); of a VLP-16 and a Puck Hi-Res --pcap has all that a log needs");
+    return;
+  }
+  const std::string name(head->name);
+  if (options.log_file.empty()) {
+    throw std::invalid_argument(name + ": its packets are not simulated; --out LOG writes its scans as LIDAR_SCAN, at which a replay begins");
+  }
+  const auto& network = options.network;
+  if (network.drop_share + network.double_share + network.swap_share > 0.0) {
+    throw std::invalid_argument(name + ": its packets are not simulated: no --drop, --double, --swap");
+  }
+}
+
+void RunHead(const sim::Options& options, const sim::Scene& scene, const config::BoatFacts& boat, const sim::Head& head,
+             const sim::SimulationParams& params, const io::OutputOptions& outputs) {
+  sim::LogSink log(options.log_file, options.config_folder, std::string(head.model),
+                   "scene " + options.scene + ", seed " + std::to_string(params.seed) + ", lidar " + std::string(head.name), outputs);
+  std::unique_ptr<sim::TruthWriter> truth;
+  if (!options.truth_folder.empty()) truth = std::make_unique<sim::TruthWriter>(options.truth_folder, scene, boat, params.start, outputs);
+  sim::HeadSimulation simulation(scene, boat, head, params, truth.get());
+  if (truth) {
+    for (const auto& fault : params.faults) truth->AddFault(fault);
+  }
+  runtime::Progress progress("lookout-sim", stderr);
+  std::int64_t num_scans = 0;
+  while (const auto event = simulation.Next()) {
+    io::ThrowIfStopAsked();
+    num_scans += std::holds_alternative<sim::HeadScan>(event->heard) ? 1 : 0;
+    log.Send(*event);
+    progress.Update(ToSeconds(event->time - params.start) / ToSeconds(params.duration));
+  }
+  std::vector<io::OutputFile*> files;
+  if (truth) files = truth->Finish();
+  files.push_back(&log.Finish());
+  const bool is_log_on_stdout = files.back()->IsStandardOutput();
+  io::CommitAll(files);
+  (is_log_on_stdout ? std::cerr : std::cout) << "scans made " << num_scans << '\n';
+}
+
 void Run(const sim::Options& options) {
   const auto boat = config::LoadBoat(options.config_folder);
   const auto scene_file = sim::FindScene(options.scene, options.config_folder);
   auto scene = sim::LoadScene(scene_file, options.simulation.seed);
   scene.effects.MergeFrom(options.effects);
-  const auto params = ToParams(options);
+  if (!options.lidar.empty()) scene.lidar = options.lidar;
+  const auto* head = sim::FindHead(scene.lidar);
+  CheckOutputs(options, head);
+  auto params = ToParams(options);
+  if (scene.lidar == sim::kHiResName) params.lidar.model = vlp16::Model::kPuckHiRes;
 
   // Outputs before all work.
   io::OutputOptions outputs;
@@ -80,6 +132,7 @@ void Run(const sim::Options& options) {
   outputs.inputs = io::FilesIn(options.config_folder);
   outputs.inputs.emplace_back(scene_file);
   outputs.tell = [](const std::string& line) { std::cerr << "lookout-sim: " << line << '\n'; };
+  if (head != nullptr) return RunHead(options, scene, boat, *head, params, outputs);
   std::unique_ptr<sim::PcapSink> capture;
   if (options.udp_host.empty()) {
     capture = std::make_unique<sim::PcapSink>(options.pcap_file, std::vector<int>{params.data_port, params.navigation.position_port}, outputs);

@@ -9,6 +9,7 @@
 #include "common/config/boat_folder.hpp"
 #include "common/core/log_time.hpp"
 #include "common/runtime/version.hpp"
+#include "lab/sim/heads.hpp"
 #include "lab/sim/scene_file.hpp"
 
 namespace lookout::sim {
@@ -63,11 +64,13 @@ void AddRun(CLI::App& app, Options& options) {
   app.add_option("--seconds", options.seconds, "length")->required()->check(Within(0.001, 86400.0));
   auto* pcap = app.add_option("--pcap", options.pcap_file, "write a capture: as FILE.partial until it is whole; one that exists is refused");
   auto* udp = app.add_option("--udp", options.udp_host, "send to this host in real time; times are those of now");
-  pcap->excludes(udp);
+  auto* log = app.add_option("--out", options.log_file, "of a head without packets: write an lcm-log of its LIDAR_SCAN and of NAV_RAW");
+  pcap->excludes(udp)->excludes(log);
+  udp->excludes(log);
   app.add_option("--truth", options.truth_folder, "write the truth to this folder; files in it that exist are refused");
-  app.add_flag("--force", options.force, "replace existing files of --pcap and --truth");
+  app.add_flag("--force", options.force, "replace existing files of --pcap, --out and --truth");
   app.add_option("--start-utime-us", options.start_utime_us,
-                 "with --pcap: time of the first shot, in microseconds since 1970 or as UTC (2026-08-29T10:00:00Z)")
+                 "with --pcap and --out: time of the first shot, in microseconds since 1970 or as UTC (2026-08-29T10:00:00Z)")
       ->transform(CLI::Validator(ToMicroseconds, ""))
       ->check(CLI::Range(std::int64_t{0}, kMaxUtimeUs))
       ->excludes(udp)
@@ -97,10 +100,9 @@ void AddLidar(CLI::App& app, Options& options) {
   const auto set_strays = [&options](double probability) { options.effects.set_stray_probability(probability); };
   app.add_option_function<double>("--strays", set_strays, "stray returns per shot that meets nothing; else as the scene says")
       ->check(Within(0.0, 1.0));
-  const auto set_model = [&lidar](const std::string& model) { lidar.model = model == "vlp16" ? vlp16::Model::kVlp16 : vlp16::Model::kPuckHiRes; };
-  app.add_option_function<std::string>("--model", set_model, "vlp16 or hi-res (Puck Hi-Res)")
-      ->check(CLI::IsMember({"vlp16", "hi-res"}))
-      ->default_str("vlp16");
+  auto* head = app.add_option("--lidar", options.lidar, "the head; else as the scene says, vlp16. Packets (--pcap, --udp): of vlp16 and hi-res alone")
+                   ->check(CLI::IsMember(HeadNames()));
+  app.add_option("--model", options.lidar, "the same, of vlp16 and hi-res (Puck Hi-Res)")->check(CLI::IsMember({"vlp16", "hi-res"}))->excludes(head);
   const auto set_field = [&lidar](const std::vector<double>& from_to_deg) { lidar.field_of_view = ToFieldOfView(from_to_deg); };
   app.add_option_function<std::vector<double>>("--field-of-view", set_field, "lasers fire from this azimuth clockwise to that one, degrees")
       ->expected(2)
@@ -151,7 +153,8 @@ Options ParseOptions(int argc, char** argv) {
   app.set_version_flag("--version", "lookout-sim " + runtime::Version());
   try {
     app.parse(argc, argv);
-    if (options.pcap_file.empty() == options.udp_host.empty()) throw CLI::RequiredError("either --pcap FILE or --udp HOST");
+    if (options.pcap_file.empty() && options.udp_host.empty() && options.log_file.empty())
+      throw CLI::RequiredError("one of --pcap FILE, --udp HOST, --out LOG");
     if (network.drop_share + network.double_share + network.swap_share > 1.0) {
       throw CLI::ValidationError("--drop, --double and --swap: together they must not be more than 1");
     }

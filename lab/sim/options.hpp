@@ -14,8 +14,11 @@ struct Options {
   std::filesystem::path config_folder;
   std::string scene;  // name or path, as in FindScene
   double seconds = 0.0;
-  std::filesystem::path pcap_file;     // empty: to udp_host
-  std::string udp_host;                // empty: to pcap_file
+  std::string lidar;  // of HeadNames(); empty: as the scene says
+  // Where to: one of the three is not empty.
+  std::filesystem::path pcap_file;
+  std::string udp_host;
+  std::filesystem::path log_file;      // LogSink
   std::filesystem::path truth_folder;  // empty: none
   bool force = false;                  // existing files are replaced
   // Of a capture. 2026-06-15 14:10:00 UTC: any date serves, as long as it is always the same.

@@ -73,6 +73,7 @@ struct Scene {
   std::vector<SceneObject> objects;
   Sea sea{};
   Effects effects{};
+  std::string lidar = "vlp16";      // one of HeadNames()
   std::optional<double> lasts_s{};  // where the file says how long things keep their distances
 };
 

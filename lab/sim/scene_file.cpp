@@ -13,6 +13,7 @@
 
 #include "common/config/text_config.hpp"
 #include "lab/sim/family.hpp"
+#include "lab/sim/heads.hpp"
 #include "lab/sim/scene_maker.hpp"
 
 namespace lookout::sim {
@@ -176,6 +177,11 @@ void CheckScene(const File& scene, SceneFaults& faults) {
   const auto is_printable = [](char c) { return c >= ' ' && c <= '~'; };
   if (scene.description().empty() || !std::ranges::all_of(scene.description(), is_printable)) {
     faults.Add("description", "must be one line of printable ASCII");
+  }
+  if (const auto names = HeadNames(); scene.has_lidar() && std::ranges::find(names, scene.lidar()) == names.end()) {
+    std::string known;
+    for (const auto& name : names) known += (known.empty() ? "" : ", ") + name;
+    faults.Add("lidar", "there is no such head; there are: " + known);
   }
   Checker own_boat_to(scene.own_boat_to(), "own_boat_to.", faults);
   own_boat_to.Forbid({"east_m", "north_m", "heading_deg", "speed_mps", "turn_rate_degps", "ellipse", "beside"},

@@ -175,6 +175,7 @@ class Drawing {
       traffic_.SetOwnBoat(scene_.own_motion);
     }
     scene_.effects = file_.effects();
+    if (file_.has_lidar()) scene_.lidar = file_.lidar();
     if (file_.has_lasts_s()) scene_.lasts_s = file_.lasts_s();
     Random sea_random(seed_, kSeaStream);
     scene_.sea = Sea::Draw(file_.sea(), sea_random);

@@ -166,16 +166,22 @@ void TruthWriter::WritePose(Utime time) {
 }
 
 void TruthWriter::AddPacket(const LidarPacket& packet) {
+  AddReturns(packet.returns);
+  packets_.push_back(packet);
+  if (packets_.size() == kPacketsPerMessage) WritePackets();
+}
+
+void TruthWriter::AddReturns(std::span<const TrueReturn> returns) {
   constexpr std::size_t kCharactersPerRow = 70;
   std::string text;
-  text.reserve(packet.returns.size() * kCharactersPerRow);
+  text.reserve(returns.size() * kCharactersPerRow);
   std::array<char, 24> digits{};
   const auto append = [&](std::int64_t value) {
     const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
     text.append(digits.data(), result.ptr);
     text.push_back(',');
   };
-  for (const auto& made : packet.returns) {
+  for (const auto& made : returns) {
     append(ToUtimeUs(made.time));
     append(made.ring);
     append(made.return_index);
@@ -185,8 +191,6 @@ void TruthWriter::AddPacket(const LidarPacket& packet) {
     text.push_back('\n');
   }
   returns_.Write(text);
-  packets_.push_back(packet);
-  if (packets_.size() == kPacketsPerMessage) WritePackets();
 }
 
 void TruthWriter::WritePackets() {

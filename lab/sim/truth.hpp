@@ -4,6 +4,7 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "common/bus/log_file.hpp"
@@ -32,6 +33,8 @@ class TruthWriter {
 
   /// Packets in the order in which they were made, each before AdvanceTo goes beyond it. The log has kPacketsPerMessage of them in a message.
   void AddPacket(const LidarPacket& packet);
+  /// Returns of a head without packets: they stand in returns.csv alone.
+  void AddReturns(std::span<const TrueReturn> returns);
   static constexpr std::size_t kPacketsPerMessage = 24;  // as in LIDAR_PACKETS: 28 kB
 
   /// What happened to a packet.

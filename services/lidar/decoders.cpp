@@ -16,7 +16,8 @@ namespace {
 constexpr std::chrono::milliseconds kMaxBundleWait(10);
 
 std::function<std::unique_ptr<PacketReader>()> ReaderMakerOf(const OtherLidar& other) {
-  return [other] { return MakeReader(other.model, other.beam_text); };
+  const std::shared_ptr<const PacketReader> first = MakeReader(other.model, other.beam_text);
+  return [first] { return first->Clone(); };
 }
 
 }  // namespace

@@ -87,6 +87,7 @@ std::optional<OtherLidar> ToOtherLidar(const std::filesystem::path& config_folde
       const auto path = config_folder / message.beam_file();
       if (std::filesystem::file_size(path) > kMaxBeamFileBytes) throw std::runtime_error("is larger than 64 KiB: no such file of a maker is");
       other.beam_text = TextOf(path);
+      if (other.beam_text.empty()) throw std::runtime_error("is empty");
       MakeReader(other.model, other.beam_text);
     } catch (const std::exception& error) {
       fault("beam_file", message.beam_file() + ": " + error.what());

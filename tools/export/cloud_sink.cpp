@@ -115,7 +115,8 @@ class CloudSink final : public Sink {
       }
     }
     writer_->BeginScan(scan.seq, scan.utime_us, datum_);
-    for (const auto& [part_index, part] : scan.scans) {
+    for (const auto& indexed : scan.scans) {
+      const auto& part = indexed.second;
       messages::ForEachReturn(part, LabelsOf(scan, part), [&](const messages::Return& one) {
         const auto p = PlaceOf(one);
         if (!p) {

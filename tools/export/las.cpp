@@ -87,8 +87,8 @@ class LasWriter final : public CloudWriter {
     }
     const int num_returns = std::clamp(point.num_returns, 1, kLasMostReturns);
     const int number = std::clamp(point.return_number, 1, num_returns);
-    constexpr int kFullScale = 257;  // 255 becomes 65535
-    AppendLittleEndian(static_cast<std::uint64_t>(std::clamp(point.reflectivity, 0, 255) * kFullScale), 2, text);
+    constexpr std::uint64_t kFullScale = 257;  // 255 becomes 65535
+    AppendLittleEndian(static_cast<std::uint64_t>(std::clamp(point.reflectivity, 0, 255)) * kFullScale, 2, text);
     text += static_cast<char>(number | num_returns << 4);
     text += '\0';  // flags, channel of the scanner, direction, edge: none
     text += static_cast<char>(point.label ? 1 : 0);

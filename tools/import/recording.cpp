@@ -76,9 +76,10 @@ std::vector<std::filesystem::path> FilesOfRecording(const std::filesystem::path&
     throw std::runtime_error(PrintableLines(path.string()) +
                              ": is a folder with files that are packed as a whole; unpack them first: zstd -d *.zstd");
   }
-  if (files.empty())
+  if (files.empty()) {
     throw std::runtime_error(PrintableLines(path.string()) +
                              ": is a folder without a recording that is known here: rosbag2 (*.db3, *.mcap), *.pcd, *.bin of KITTI");
+  }
   std::ranges::sort(files, {}, [](const auto& file) { return std::pair(NumberOfFile(file), file.string()); });
   return files;
 }

@@ -25,7 +25,7 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 34> kFigureNames{"main",
+constexpr std::array<std::string_view, 36> kFigureNames{"main",
                                                         "times",
                                                         "miou",
                                                         "false",
@@ -58,7 +58,9 @@ constexpr std::array<std::string_view, 34> kFigureNames{"main",
                                                         "long_alerts_targets",
                                                         "long_alerts_verdicts",
                                                         "long_alerts_causes",
-                                                        "long_alerts_dangers"};
+                                                        "long_alerts_dangers",
+                                                        "sensors",
+                                                        "sensors_families"};
 
 // In headings of columns a world stands before its figure.
 std::string HeadingOf(const Results& world, const std::string& text) { return world.world.empty() ? text : world.world + ": " + text; }

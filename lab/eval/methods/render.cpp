@@ -9,6 +9,8 @@
 
 #include "common/bus/channels.hpp"
 #include "common/messages/checks.hpp"
+#include "lab/data/scan_message.hpp"
+#include "lab/sim/head_lidar.hpp"
 #include "lab/sim/lidar.hpp"
 #include "services/lidar/core/vlp16/decoder.hpp"
 #include "services/lidar/wire.hpp"
@@ -58,6 +60,19 @@ std::vector<std::int32_t> TakeObjects(const segmenter::Scan& scan, std::deque<Tr
   return object;
 }
 
+void RenderHead(const sim::Scene& scene, const Boat& boat, const sim::Head& head, std::uint64_t seed, Utime end, LabelledScan& labelled,
+                const ScanHandler& on_scan) {
+  const sim::LidarParams params;
+  sim::HeadLidar lidar(scene, boat.facts, head, params.rotation_rpm, params.field_of_view, kStart, seed);
+  for (auto made = lidar.Next(); made.scan.head.end_time <= end; made = lidar.Next()) {
+    auto received = ScanOfMessages(data::ToScanMessages(made.scan, std::string(head.model), bus::kMaxMessageBytes));
+    if (!received) throw std::logic_error("the segmenter refuses a scan of a simulated head");
+    labelled.scan = std::move(*received);
+    labelled.object = std::move(made.object_id);
+    on_scan(labelled);
+  }
+}
+
 }  // namespace
 
 Boat LoadBoat(const std::filesystem::path& config_folder) {
@@ -78,6 +93,11 @@ segmenter::Scan ToSegmenterScan(const lidar::Scan& scan) {
 void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {
   LabelledScan labelled;
   for (const auto& object : scene.objects) labelled.objects[object.id] = {object.name, object.kind, object.is_in_water};
+  const Utime end = kStart + std::chrono::microseconds(std::llround(seconds * 1e6));
+  if (const auto* head = sim::FindHead(scene.lidar)) {
+    RenderHead(scene, boat, *head, seed, end, labelled, on_scan);
+    return;
+  }
 
   std::deque<Truth> truths;
   vlp16::Decoder decoder(
@@ -90,9 +110,9 @@ void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, 
       [](const lidar::SentenceOfLidar&) {});
 
   sim::LidarParams params;
+  if (scene.lidar == sim::kHiResName) params.model = vlp16::Model::kPuckHiRes;
   params.use_vertical_origin_offsets = boat.lidar.decoder.use_vertical_origin_offsets;
   sim::Lidar lidar(scene, boat.facts, params, kStart, seed);
-  const Utime end = kStart + std::chrono::microseconds(std::llround(seconds * 1e6));
   for (auto packet = lidar.Next(); packet.end_time <= end; packet = lidar.Next()) {
     for (const auto& one : packet.returns) truths.push_back({one.ring, one.return_index, one.object_id});
     if (!decoder.OnDataPayload(packet.end_time + kLatency, packet.payload)) {

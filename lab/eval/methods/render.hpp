@@ -39,6 +39,8 @@ using ScanHandler = std::function<void(const LabelledScan&)>;
 /// Lets the simulated lidar look at a scene, decodes its packets as lookout-lidar does, and hands on each whole scan, one at a time. The truth joins
 /// its cell exactly: no packet is lost on the way, so that the returns of the packets and those of the columns follow each other one by one.
 ///
+/// Scans of a head whose packets are not made (Scene::lidar) come as LIDAR_SCAN would bring them.
+///
 /// @param scene    outlives the call
 /// @param seed     of the sensor
 /// @param seconds  of firing; the begun scans at both ends are left out

@@ -1,13 +1,16 @@
 #include "lab/eval/methods/run_plan.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
 #include "common/config/text_config.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
+#include "lab/sim/heads.hpp"
 #include "lab/sim/scene_file.hpp"
 
 namespace lookout::eval {
@@ -23,6 +26,14 @@ void RunPlan::CheckSeeds(SeedUse use) const {
   }
   if (use == SeedUse::kTuning && (first_seed < kFirstTuningSeed || last_seed > kLastTuningSeed)) {
     throw std::invalid_argument(seeds + ": nothing is tuned on seeds of tables" + ranges);
+  }
+}
+
+void CheckLidars(const std::vector<std::string>& names) {
+  const auto known = sim::HeadNames();
+  for (const auto& name : names) {
+    if (std::ranges::find(known, name) == known.end())
+      throw std::invalid_argument(fmt::format("--lidar {}: there is no such head; there are: {}", name, fmt::join(known, ", ")));
   }
 }
 
@@ -60,7 +71,8 @@ void ForEachScan(const RunPlan& plan, const Boat& boat, std::FILE* progress,
     for (int k = 0; k < plan.num_seeds; ++k) {
       place.seed = plan.first_seed + static_cast<std::uint64_t>(k);
       place.index = 0;
-      const auto scene = sim::LoadScene(files[i], place.seed);
+      auto scene = sim::LoadScene(files[i], place.seed);
+      if (!plan.lidars.empty()) scene.lidar = plan.lidars[(i + static_cast<std::size_t>(k)) % plan.lidars.size()];
       RenderScans(scene, boat, place.seed, plan.seconds, [&](const LabelledScan& truth) {
         io::ThrowIfStopAsked();
         on_scan(place, truth);

@@ -25,10 +25,16 @@ struct RunPlan {
   std::uint64_t first_seed = 1;
   int num_seeds = 1;
   double seconds = 2.0;  // of each scene and seed
+  /// Heads (sim::HeadNames) that look at the scenes in place of their own; of several each seed has another in turn, and scenes begin with different
+  /// ones. Empty: as the scenes say.
+  std::vector<std::string> lidars{};
 
   /// @throws std::invalid_argument when one of the seeds is of the other range; says both ranges
   void CheckSeeds(SeedUse use) const;
 };
+
+/// Checks names of heads. @throws std::invalid_argument for one that is none; it says which there are
+void CheckLidars(const std::vector<std::string>& names);
 
 /// As it stands in tables: the name itself, or that of the file without folder and ending.
 std::string SceneLabel(const std::string& name_or_path);

@@ -78,10 +78,15 @@ void OverTimeMethod::Run(const ScanPlace& place) {
     if (channel == bus::kSegments.name) take(bus::Decode<segments_t>(bytes));
     if (channel == bus::kTracks.name) take(bus::Decode<tracks_t>(bytes));
   });
-  has_run_ = feed_(place, [&chain](const replay::Datagram& datagram) {
-    io::ThrowIfStopAsked();
-    chain.OnDatagram(datagram);
-  });
+  has_run_ = feed_(
+      place,
+      [&chain](const replay::Datagram& datagram) {
+        io::ThrowIfStopAsked();
+        chain.OnDatagram(datagram);
+      },
+      [&chain](Utime time, const std::vector<lidar_scan_t>& parts) {
+        for (const auto& part : parts) chain.OnLogged(time, bus::kLidarScan, bus::Encode(part));
+      });
   if (!has_run_) return;
   chain.Finish();
   collector.Finish();
@@ -103,22 +108,23 @@ Labelling OverTimeMethod::Segment(const segmenter::Scan& scan) {
   return labelling;
 }
 
-OverTimeMethod::Feed FeedOfScenes(const std::filesystem::path& config_folder, std::span<const std::string> scenes, double seconds) {
+OverTimeMethod::Feed FeedOfScenes(const std::filesystem::path& config_folder, std::span<const std::string> scenes, double seconds,
+                                  const std::string& lidar) {
   std::map<std::string, std::filesystem::path> files;
   for (const auto& scene : scenes) files[SceneLabel(scene)] = sim::FindScene(scene, config_folder);
-  return [config_folder, files, seconds](const ScanPlace& place, const DatagramHandler& on_datagram) {
+  return [config_folder, files, seconds, lidar](const ScanPlace& place, const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan) {
     // The last packet of the last scan arrives later than it ends.
     constexpr double kArrivalS = 0.1;
     const auto file = files.find(place.scene);
     if (file == files.end()) return false;
     Truth truth(1);
-    SimulateRun(config_folder, file->second, place.seed, seconds + kArrivalS, truth, on_datagram);
+    SimulateRun(config_folder, file->second, place.seed, seconds + kArrivalS, truth, on_datagram, on_scan, lidar);
     return true;
   };
 }
 
 OverTimeMethod::Feed FeedOfCaptures(std::vector<CaptureWithTruth> captures) {
-  return [captures = std::move(captures)](const ScanPlace& place, const DatagramHandler& on_datagram) {
+  return [captures = std::move(captures)](const ScanPlace& place, const DatagramHandler& on_datagram, const ScanMessageHandler& /*on_scan*/) {
     const auto files = std::ranges::find_if(captures, [&](const auto& one) { return one.scene == place.scene && one.seed == place.seed; });
     if (files == captures.end()) return false;
     SendCapture(*files, on_datagram);

@@ -26,7 +26,7 @@ inline constexpr std::string_view kOverTime = "ours over time";
 class OverTimeMethod final : public Method {
  public:
   /// Sends the sensors' messages in the run of a scan. @return false: there is no such run, and its scans are not labelled
-  using Feed = std::function<bool(const ScanPlace& place, const DatagramHandler& on_datagram)>;
+  using Feed = std::function<bool(const ScanPlace& place, const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan)>;
 
   /// @param config_folder  of the boat
   OverTimeMethod(std::filesystem::path config_folder, Feed feed) : config_folder_(std::move(config_folder)), feed_(std::move(feed)) {}
@@ -56,7 +56,10 @@ class OverTimeMethod final : public Method {
 };
 
 /// Feeds of the runs of a plan, by the names that scenes have in tables, and of captures.
-OverTimeMethod::Feed FeedOfScenes(const std::filesystem::path& config_folder, std::span<const std::string> scenes, double seconds);
+///
+/// @param lidar  the head in place of the scenes'; empty: theirs
+OverTimeMethod::Feed FeedOfScenes(const std::filesystem::path& config_folder, std::span<const std::string> scenes, double seconds,
+                                  const std::string& lidar = {});
 OverTimeMethod::Feed FeedOfCaptures(std::vector<CaptureWithTruth> captures);
 
 }  // namespace lookout::eval

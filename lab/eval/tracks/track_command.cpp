@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/bus/channels.hpp"
+#include "common/bus/decode.hpp"
 #include "common/config/text_config.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
@@ -61,12 +63,20 @@ std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string&
     check(run->Add(channel, bytes), channel);
     for (const auto& one : ablated) one->Add(channel, bytes);
   });
-  feed([&](const replay::Datagram& datagram) {
+  const auto begin = [&] {
     io::ThrowIfStopAsked();
     // The truth knows its objects now.
     if (!run) run.emplace(truth, ablations.empty() ? MakeTrackers() : MultiObjectTrackers(), TrackRun::Returns::kForgotten, limits, names, count);
-    chain.OnDatagram(datagram);
-  });
+  };
+  feed(
+      [&](const replay::Datagram& datagram) {
+        begin();
+        chain.OnDatagram(datagram);
+      },
+      [&](Utime time, const std::vector<lidar_scan_t>& parts) {
+        begin();
+        for (const auto& part : parts) chain.OnLogged(time, bus::kLidarScan, bus::Encode(part));
+      });
   if (!run) throw std::runtime_error(scene + ": no datagram");
   chain.Finish();
   for (const auto& one : ablated) one->Finish();
@@ -101,7 +111,8 @@ void AddTo(std::vector<TrackRow>& runs, std::vector<TrackRow> rows) {
   runs.insert(runs.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
 }
 
-std::vector<TrackRow> RunScenes(const TrackOptions& options, std::ostream* events) {
+// @param lidar  the head; empty: as the scenes say
+std::vector<TrackRow> RunScenes(const TrackOptions& options, const std::string& lidar, std::ostream* events) {
   std::vector<TrackRow> runs;
   runtime::Progress progress("lookout-eval", stderr);
   const auto ablations = AblationsOf(options);
@@ -117,9 +128,10 @@ std::vector<TrackRow> RunScenes(const TrackOptions& options, std::ostream* event
       with_evidence.emplace(options.config_folder, evidence.FileOf(scene));
       evidence_of = scene;
     }
-    auto rows = ScoreRun(
-        with_evidence ? with_evidence->path() : options.config_folder, scene, truth, ablations, nullptr,
-        [&](const DatagramHandler& on_datagram) { SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram); });
+    auto rows = ScoreRun(with_evidence ? with_evidence->path() : options.config_folder, lidar.empty() ? scene : lidar + ": " + scene, truth,
+                         ablations, nullptr, [&](const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan) {
+                           SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram, on_scan, lidar);
+                         });
     if (events != nullptr) WriteEvents(rows, seed, truth, *events);
     AddTo(runs, std::move(rows));
   });
@@ -153,7 +165,7 @@ std::vector<TrackRow> RunCaptures(const TrackOptions& options, const fs::path& f
     const auto read = has_returns ? ReadRun : ReadRunOfObjects;
     auto rows = ScoreRun(config.path(), WorldOf(folder) + ": " + files.scene, truth, AblationsOf(options),
                          has_returns ? CountReturns() : ReadReturnCounts(files),
-                         [&](const DatagramHandler& on_datagram) { read(files, boat, truth, on_datagram); });
+                         [&](const DatagramHandler& on_datagram, const ScanMessageHandler& /*on_scan*/) { read(files, boat, truth, on_datagram); });
     if (events != nullptr) WriteEvents(rows, files.seed, truth, *events);
     AddTo(runs, std::move(rows));
   }
@@ -204,7 +216,8 @@ int EvaluateTracks(const TrackOptions& options) {
   const auto add_world = [&worlds](const std::string& name, const std::vector<TrackRow>& runs, const std::string& over_all) {
     if (!runs.empty()) worlds.push_back({name, AddUp(runs), over_all});
   };
-  add_world("own scenes", RunScenes(options, events), "all scenes");
+  if (options.plan.lidars.empty()) add_world("own scenes", RunScenes(options, "", events), "all scenes");
+  for (const auto& lidar : options.plan.lidars) add_world(lidar, RunScenes(options, lidar, events), lidar + ": all scenes");
   bool has_captures = false;
   for (const auto& folder : options.captures) {
     if (!fs::exists(folder)) {

@@ -14,13 +14,16 @@
 #include <utility>
 #include <vector>
 
+#include "common/bus/channels.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "config/schema/segmenter.pb.h"
 #include "lab/data/csv_file.hpp"
+#include "lab/data/scan_message.hpp"
 #include "lab/eval/methods/figures.hpp"
+#include "lab/sim/head_simulation.hpp"
 #include "lab/sim/scene_file.hpp"
 #include "lab/sim/simulation.hpp"
 #include "services/lidar/io/capture_reader.hpp"
@@ -205,23 +208,42 @@ void AddSceneTruth(const fs::path& config_folder, const fs::path& scene_file, st
 }
 
 void SimulateRun(const fs::path& config_folder, const fs::path& scene_file, std::uint64_t seed, double seconds, Truth& truth,
-                 const DatagramHandler& on_datagram) {
+                 const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan, const std::string& lidar) {
   const auto boat = config::LoadBoat(config_folder);
-  const auto scene = sim::LoadScene(scene_file, seed);
+  auto scene = sim::LoadScene(scene_file, seed);
+  if (!lidar.empty()) scene.lidar = lidar;
   AddOutlines(scene, boat, seconds, truth);
   auto params = sim::ParamsOfConfig(config_folder);
   params.start = kStart;
   params.duration = std::chrono::microseconds(std::llround(seconds * 1e6));
   params.seed = seed;
-  params.on_packet = [&truth](const sim::LidarPacket& packet) {
+  const auto add_returns = [&truth](const std::vector<sim::TrueReturn>& of_lidar) {
     std::vector<Truth::Return> returns;
-    for (const auto& made : packet.returns) {
+    returns.reserve(of_lidar.size());
+    for (const auto& made : of_lidar) {
       returns.push_back({ToUtimeUs(made.time), made.ring, made.return_index, made.object_id, made.p_lidar_m.cast<float>()});
     }
     truth.AddReturns(std::move(returns));
   };
+  const auto send = [&on_datagram](const sim::Datagram& datagram) { on_datagram({datagram.time, datagram.port, datagram.payload}); };
+  if (const auto* head = sim::FindHead(scene.lidar)) {
+    if (!on_scan) throw std::invalid_argument(scene_file.string() + ": the packets of " + scene.lidar + " are not simulated");
+    sim::HeadSimulation simulation(scene, boat, *head, params, nullptr);
+    while (const auto event = simulation.Next()) {
+      if (const auto* datagram = std::get_if<sim::Datagram>(&event->heard)) {
+        send(*datagram);
+        continue;
+      }
+      const auto& made = std::get<sim::HeadScan>(event->heard);
+      add_returns(made.returns);
+      on_scan(event->time, data::ToScanMessages(made.scan, std::string(head->model), bus::kMaxMessageBytes));
+    }
+    return;
+  }
+  if (scene.lidar == sim::kHiResName) params.lidar.model = vlp16::Model::kPuckHiRes;
+  params.on_packet = [&add_returns](const sim::LidarPacket& packet) { add_returns(packet.returns); };
   sim::Simulation simulation(scene, boat, params, nullptr);
-  while (const auto datagram = simulation.Next()) on_datagram({datagram->time, datagram->port, datagram->payload});
+  while (const auto datagram = simulation.Next()) send(*datagram);
 }
 
 void SendCapture(const CaptureWithTruth& files, const DatagramHandler& on_datagram) {

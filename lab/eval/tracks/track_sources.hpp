@@ -12,6 +12,7 @@
 #include "lab/eval/methods/captures.hpp"
 #include "lab/eval/methods/run_plan.hpp"
 #include "lab/eval/truth.hpp"
+#include "lookout/lidar_scan_t.hpp"
 #include "tools/replay/stage.hpp"
 
 namespace lookout::eval {
@@ -38,12 +39,17 @@ void ForEachRun(const RunOptions& options,
 
 using DatagramHandler = std::function<void(const replay::Datagram&)>;
 
+/// Sends a scan in place of its packets: all parts of LIDAR_SCAN.
+using ScanMessageHandler = std::function<void(Utime time, const std::vector<lidar_scan_t>& parts)>;
+
 /// Simulates a scene as lookout-sim does.
 ///
+/// @param on_scan  of a scene whose head has no packets; without one such a scene is refused
+/// @param lidar    the head in place of the scene's; empty: the scene's
 /// @param truth  empty; objects and outlines stand in it before the first datagram, returns before that of their packet
 /// @throws config::ConfigError
 void SimulateRun(const std::filesystem::path& config_folder, const std::filesystem::path& scene_file, std::uint64_t seed, double seconds,
-                 Truth& truth, const DatagramHandler& on_datagram);
+                 Truth& truth, const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan = {}, const std::string& lidar = {});
 
 /// The same truth without the run: objects and outlines alone.
 void AddSceneTruth(const std::filesystem::path& config_folder, const std::filesystem::path& scene_file, std::uint64_t seed, double seconds,

@@ -110,8 +110,8 @@ std::optional<Datagram> CaptureReader::Next(std::int64_t max_frames) {
     }
     auto frame = ParseFrame(captured->link_type, captured->bytes, captured->is_cut);
     std::optional<std::vector<std::uint8_t>> joined;
-    if (frame.fragment) {
-      joined = fragments_.Add(*frame.fragment);
+    if (frame.fragment && captured->time) {
+      joined = fragments_.Add(*captured->time, *frame.fragment);
       if (joined) frame = ParseDatagram(*joined, frame.fragment->source_address);
     }
     if (!frames_.Add(frame, captured->time)) continue;

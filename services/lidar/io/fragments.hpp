@@ -1,6 +1,7 @@
 // Puts IP datagrams together again that a sender or a router has cut: packets above 1472 bytes come so (all of an Ouster's).
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "common/core/bytes.hpp"
+#include "common/core/utime.hpp"
 
 namespace lookout::lidar {
 
@@ -21,14 +23,17 @@ struct Fragment {
   Bytes bytes;  // within those of the frame
 };
 
-/// RFC 791 and RFC 8200. Parts may come in any order. Parts that overlap, or go beyond 65 535 bytes, end their datagram. Of datagrams that never
-/// become whole the oldest make way.
+/// RFC 791 and RFC 8200. Parts may come in any order. Parts that overlap, hold nothing, or go beyond 65 535 bytes, end their datagram. Of datagrams
+/// that never become whole the oldest make way.
 class FragmentJoiner {
  public:
   static constexpr std::size_t kMaxDatagrams = 32;
+  /// Parts of one datagram follow each other at once, and its identification comes again within a minute.
+  static constexpr std::chrono::seconds kMaxAge{1};
 
+  /// @param time  of the frame
   /// @return the UDP datagram, with its header, that this part completes
-  std::optional<std::vector<std::uint8_t>> Add(const Fragment& fragment);
+  std::optional<std::vector<std::uint8_t>> Add(Utime time, const Fragment& fragment);
 
   /// Datagrams that were given up.
   std::int64_t num_given_up() const { return num_given_up_; }
@@ -39,6 +44,7 @@ class FragmentJoiner {
     std::vector<std::uint8_t> bytes;
   };
   struct Datagram {
+    Utime first;  // of its first part
     std::string source_address;
     std::string destination_address;
     std::uint32_t identification = 0;

@@ -12,8 +12,8 @@ namespace lookout::lidar {
 
 namespace {
 
-// A data packet takes 1248 bytes with its headers, 8 more with two VLAN tags; jumbo frames are no lidar's.
-constexpr int kSnapLengthBytes = 2048;
+// Whole frames: on the loopback interface and on those for jumbo frames a datagram of an Ouster, of up to 25 kB, is one.
+constexpr int kSnapLengthBytes = 65'535;
 
 // Compiles and, with a live handle, installs it.
 std::string ApplyFilter(pcap_t* capture, const std::string& filter, bool is_installed) {
@@ -44,7 +44,7 @@ std::string ReasonOf(pcap_t* capture, int status) {
 std::string FilterOfPorts(int data_port, int position_port, bool has_vlan) {
   // Parts of a datagram behind the first have no ports.
   const std::string ports = "((udp and (dst port " + std::to_string(data_port) + " or dst port " + std::to_string(position_port) +
-                            ")) or (ip proto 17 and ip[6:2] & 0x1fff != 0))";
+                            ")) or (ip proto 17 and ip[6:2] & 0x1fff != 0) or (ip6[6] == 44 and ip6[40] == 17))";
   // "vlan" shifts the offsets of everything to its right, so untagged frames stand first and the tags nest.
   return has_vlan ? ports + " or (vlan and (" + ports + " or (vlan and " + ports + ")))" : ports;
 }
@@ -138,13 +138,13 @@ std::string LiveCapture::Poll(Utime now) {
 
 std::optional<io::Source::Piece> LiveCapture::Check(Bytes bytes, bool is_cut, std::int64_t seconds, std::int64_t fraction) {
   auto frame = ParseFrame(link_type_, bytes, is_cut);
-  if (frame.fragment) {
-    if (auto joined = fragments_.Add(*frame.fragment)) {
+  const auto host_time = UtimeOfStamp(seconds, fraction * nanoseconds_per_fraction_);
+  if (frame.fragment && host_time) {
+    if (auto joined = fragments_.Add(*host_time, *frame.fragment)) {
       joined_ = std::move(*joined);
       frame = ParseDatagram(joined_, frame.fragment->source_address);
     }
   }
-  const auto host_time = UtimeOfStamp(seconds, fraction * nanoseconds_per_fraction_);
   if (host_time) last_time_ = *host_time;
   if (!frames_.Add(frame, host_time)) return std::nullopt;
   const auto& allowed = options_.allowed_source_addresses;

@@ -45,7 +45,7 @@ void ViewerQueue::Forget(std::size_t channel) {
   });
 }
 
-void ViewerQueue::Drop(std::deque<ViewerMessage>::iterator message) {
+void ViewerQueue::Drop(const std::deque<ViewerMessage>::iterator& message) {
   num_bytes_ -= message->bytes->size();
   waiting_.erase(message);
   ++num_dropped_;

@@ -41,7 +41,7 @@ class ViewerQueue {
   std::int64_t num_dropped() const { return num_dropped_; }
 
  private:
-  void Drop(std::deque<ViewerMessage>::iterator message);
+  void Drop(const std::deque<ViewerMessage>::iterator& message);
 
   std::deque<ViewerMessage> waiting_;
   std::size_t num_bytes_ = 0;

@@ -39,8 +39,8 @@ std::int32_t GroundOf(PieceFeature feature) {
     case PieceFeature::kSlope:
       return kAtSurface;
     case PieceFeature::kReturns:
-    case PieceFeature::kColumns:
-    case PieceFeature::kRings:
+    case PieceFeature::kAngle:
+    case PieceFeature::kRise:
     case PieceFeature::kWidth:
     case PieceFeature::kDepth:
     case PieceFeature::kLength:

@@ -21,6 +21,9 @@ constexpr double kCoarseWeight = 0.3;  // as cells of 0.5 m count 1
 // Of so many, as in rain, only those with some returns count in coarse cells, where each has hundreds of neighbours.
 constexpr std::size_t kManyPieces = 1000;
 constexpr std::size_t kReturnsOfMany = 3;
+// Drops meet each other by the square of their number: 16 rings see 120 000 pairs in heavy rain, 128 rings millions. Beyond so many, segments of a
+// single return have no neighbours at all.
+constexpr std::size_t kMostPairs = 500'000;
 constexpr double kLandVote = 0.3;       // above it a piece is land
 constexpr float kLandEvidence = 2.0F;   // that two pieces of land beside each other are one
 constexpr std::int32_t kOldScans = 10;  // a thing seen there for so long is no part of one that moves past it
@@ -73,6 +76,7 @@ void Ledger::Sums::Grow() {
 
 const Ledger::Groups& Ledger::Divide(std::span<const Piece> pieces, std::span<const Frame> frames) {
   TakeNote(pieces, frames);
+  FindLone(pieces);
   FindLand(pieces);
   sums_.Begin(pieces.size());
   AddEvidence(fine_, kFineReachM, 1.0);
@@ -82,6 +86,22 @@ const Ledger::Groups& Ledger::Divide(std::span<const Piece> pieces, std::span<co
   partition_.Find(static_cast<std::int32_t>(pieces.size()), sums_.pairs(), 0.0F);
   Group(pieces);
   return groups_;
+}
+
+void Ledger::FindLone(std::span<const Piece> pieces) {
+  is_lone_.assign(pieces.size(), 0);
+  std::size_t num_pairs = 0;
+  for (const auto& pair : fine_.pairs()) {
+    num_pairs += fine_.EntriesOf(fine_.held()[IndexOf(pair.one)]).size() * fine_.EntriesOf(fine_.held()[IndexOf(pair.other)]).size();
+  }
+  if (num_pairs <= kMostPairs) return;
+  std::vector<std::int32_t> segments = segments_;
+  std::ranges::sort(segments);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].places_m.size() > 1) continue;
+    const auto [first, last] = std::equal_range(segments.begin(), segments.end(), pieces[i].segment);
+    is_lone_[i] = last - first == 1 ? 1 : 0;
+  }
 }
 
 void Ledger::TakeNote(std::span<const Piece> pieces, std::span<const Frame> frames) {
@@ -140,7 +160,9 @@ void Ledger::AddEvidence(const VoteGrid& grid, double reach_m, double weight) {
     const float evidence =
         pair.mean * nearness.at(IndexOf(pair.distance2)) / std::sqrt(static_cast<float>(one.count) * static_cast<float>(other.count));
     for (const auto& a : ones) {
+      if (is_lone_[IndexOf(a.piece)] != 0) continue;
       for (const auto& b : others) {
+        if (is_lone_[IndexOf(b.piece)] != 0) continue;
         if (a.piece == b.piece || (pair.one == pair.other && a.piece > b.piece)) continue;
         auto met = sums_.Of(a.piece, b.piece);
         if (met.is_first && IsLand(a.piece) && IsLand(b.piece)) met.evidence += kLandEvidence;
@@ -154,6 +176,7 @@ void Ledger::AddEvidenceAcross(std::span<const Piece> pieces) {
   constexpr std::array<std::int64_t, 1> kMap{0};
   across_.Begin(kMap, segments_, 1);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (is_lone_[i] != 0) continue;
     for (const auto& place_m : pieces[i].places_m) across_.Add(0, place_m, static_cast<std::int32_t>(i));
   }
   across_.FindPairs();

@@ -42,7 +42,8 @@ class Ledger {
   ///
   /// @param frames  the first is the earth
   /// @return until the next call
-  /// Cost: proportional to the pairs of cells with returns that are 2.5 m apart at most; figures in the bench. Memory: VoteGrid.
+  /// Cost: proportional to the pairs of pieces in cells that are 2.5 m apart at most; figures in the bench. Of very many pairs those with a
+  /// segment of a single return are left out. Memory: VoteGrid.
   const Groups& Divide(std::span<const Piece> pieces, std::span<const Frame> frames);
 
   /// Of the last call's groups: the evidence between two of them, 0 or below; 0 where nothing was measured between them.
@@ -71,6 +72,8 @@ class Ledger {
     std::vector<std::int32_t> slots_;  // open hash table: index of pairs_, or -1
   };
 
+  // Pieces without neighbours, where there are very many pairs.
+  void FindLone(std::span<const Piece> pieces);
   void TakeNote(std::span<const Piece> pieces, std::span<const Frame> frames);
   void FindLand(std::span<const Piece> pieces);
   void AddEvidence(const VoteGrid& grid, double reach_m, double weight);
@@ -80,6 +83,7 @@ class Ledger {
   void Group(std::span<const Piece> pieces);
 
   std::vector<std::int32_t> segments_;  // [pieces]
+  std::vector<std::uint8_t> is_lone_;   // [pieces] 1: without neighbours
   VoteGrid fine_{0.5, VoteGrid::Content::kAll};
   VoteGrid coarse_{2.0, VoteGrid::Content::kMostOf};
   VoteGrid across_{0.5, VoteGrid::Content::kAll};  // of this scan only, on the map

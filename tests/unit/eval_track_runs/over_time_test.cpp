@@ -73,7 +73,7 @@ TEST(OverTime, IsTheSameEachTime) {
 }
 
 TEST(OverTime, HasNoLabelsForScansOfNoRun) {
-  OverTimeMethod method(support::kCatabotConfig, [](const ScanPlace&, const DatagramHandler&) { return false; });
+  OverTimeMethod method(support::kCatabotConfig, [](const ScanPlace&, const DatagramHandler&, const ScanMessageHandler&) { return false; });
   EXPECT_FALSE(method.BeginScan({"points", 0, 0}));
   EXPECT_FALSE(method.BeginScan({"points", 0, 1}));
 }

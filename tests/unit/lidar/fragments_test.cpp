@@ -76,9 +76,10 @@ class Fragments : public ::testing::TestWithParam<bool> {
     const auto frame = ParseFrame(kRawIp, frame_bytes, false);
     EXPECT_EQ(frame.fault, FrameFault::kFragment);
     EXPECT_TRUE(frame.fragment);
-    return frame.fragment ? joiner_.Add(*frame.fragment) : std::nullopt;
+    return frame.fragment ? joiner_.Add(now_, *frame.fragment) : std::nullopt;
   }
 
+  Utime now_{};
   FragmentJoiner joiner_;
 };
 
@@ -118,6 +119,24 @@ TEST_P(Fragments, ThatOverlapAreGivenUp) {
   EXPECT_FALSE(Add(PartOf(udp, 1, 0, 1480)));
   EXPECT_FALSE(Add(PartOf(udp, 1, 1472, 1480)));
   EXPECT_EQ(joiner_.num_given_up(), 1);
+}
+
+// An identification comes again: what was left of a datagram must not become part of another.
+TEST_P(Fragments, ThatAreOldAreGivenUp) {
+  const auto udp = Udp(2000);
+  EXPECT_FALSE(Add(PartOf(udp, 1, 1480, 1480)));
+  now_ += std::chrono::milliseconds(1001);
+  EXPECT_FALSE(Add(PartOf(udp, 1, 0, 1480)));
+  EXPECT_EQ(joiner_.num_given_up(), 1);
+}
+
+TEST_P(Fragments, WithoutBytesAreGivenUp) {
+  const auto udp = Udp(4000);
+  const std::vector<std::uint8_t> none;
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_FALSE(Add(GetParam() ? Ipv6Part(none, 1, 8, false) : Ipv4Part(none, 1, 8, false)));
+  }
+  EXPECT_EQ(joiner_.num_given_up(), 1000);
 }
 
 TEST_P(Fragments, OfDatagramsThatNeverBecomeWholeAreBounded) {

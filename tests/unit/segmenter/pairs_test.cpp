@@ -45,13 +45,13 @@ TEST(PairFinder, MeasuresTheGapBetweenPiecesBesideEachOther) {
     EXPECT_NEAR(Of(*pair, PairFeature::kRange), 10.0, kRounding);
     EXPECT_NEAR(Of(*pair, PairFeature::kGap), ChordM(4), kRounding);
     EXPECT_NEAR(Of(*pair, PairFeature::kFreeGap), ChordM(4), kRounding);
-    EXPECT_EQ(Of(*pair, PairFeature::kGapColumns), 4.0);
+    EXPECT_NEAR(Of(*pair, PairFeature::kGapAngle), 4.0, kRounding);
     EXPECT_EQ(Of(*pair, PairFeature::kRadialGap), 0.0);
-    EXPECT_EQ(Of(*pair, PairFeature::kRingGap), 0.0);
+    EXPECT_EQ(Of(*pair, PairFeature::kRiseGap), 0.0);
     EXPECT_EQ(Of(*pair, PairFeature::kOverlap), 0.0);
     EXPECT_EQ(Of(*pair, PairFeature::kFaced), 0.0);
-    EXPECT_EQ(Of(*pair, PairFeature::kSmallReturns), 4.0);
-    EXPECT_EQ(Of(*pair, PairFeature::kLargeReturns), 5.0);
+    EXPECT_NEAR(Of(*pair, PairFeature::kSmallAngle), 4.0 * 2.0, kRounding);  // beams of 1 by 2 degrees
+    EXPECT_NEAR(Of(*pair, PairFeature::kLargeAngle), 5.0 * 2.0, kRounding);
     EXPECT_NEAR(Of(*pair, PairFeature::kSmallWidth), 40.0 * DegToRad(1.0), kRounding);
     EXPECT_NEAR(Of(*pair, PairFeature::kLargeWidth), 50.0 * DegToRad(1.0), kRounding);
     EXPECT_NEAR(Of(*pair, PairFeature::kSmallLength), ChordM(3), kRounding);
@@ -89,10 +89,10 @@ TEST(PairFinder, MeasuresTheGapBetweenPiecesOneBehindTheOther) {
     const auto pair = FindPair(scene, 0, 1);
     ASSERT_TRUE(pair);
     EXPECT_NEAR(pair->gap_m, behind_m, kRounding);
-    EXPECT_EQ(Of(*pair, PairFeature::kGapColumns), 0.0);
+    EXPECT_EQ(Of(*pair, PairFeature::kGapAngle), 0.0);
     EXPECT_NEAR(Of(*pair, PairFeature::kRadialGap), behind_m, kRounding);
     EXPECT_NEAR(Of(*pair, PairFeature::kRadialGapRings), behind_m * kLidarAboveWaterM / (100.0 * DegToRad(2.0)), kRounding);
-    EXPECT_EQ(Of(*pair, PairFeature::kRingGap), 2.0);
+    EXPECT_NEAR(Of(*pair, PairFeature::kRiseGap), 4.0, kRounding);  // two rings
     EXPECT_NEAR(Of(*pair, PairFeature::kStepUp), (20.0 + behind_m) * std::tan(DegToRad(2.0)), kRounding);
     EXPECT_NEAR(Of(*pair, PairFeature::kTopStep), (20.0 + behind_m) * std::tan(DegToRad(2.0)), kRounding);
     EXPECT_EQ(Of(*pair, PairFeature::kOverlap), 0.5);

@@ -235,7 +235,8 @@ TEST(MeasurePieces, SaysWhatStandsBeforeBehindAndAround) {
   EXPECT_FLOAT_EQ(Of(features[1], PieceFeature::kBackdrop), 0.0F);
   EXPECT_NEAR(Of(features[1], PieceFeature::kCovered), 2.0 / 6.0, kRoundingM);
   EXPECT_FLOAT_EQ(Of(features[2], PieceFeature::kCovered), 1.0F);
-  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kCrowd), 1.0F);
+  constexpr double kBeamsAround = 5.0 * 3.0;  // two columns to each side, three rings
+  EXPECT_NEAR(Of(features[0], PieceFeature::kCrowd), 272.0 / kBeamsAround, kRoundingM);
   EXPECT_FLOAT_EQ(Of(features[2], PieceFeature::kCrowd), 0.0F);
 }
 
@@ -251,8 +252,8 @@ TEST(MeasurePieces, SaysHowDenseAndHowHighAPieceIs) {
   const double depth_m = 12.0 * std::cos(DegToRad(2.0)) - 10.0;
   EXPECT_NEAR(Of(features[0], PieceFeature::kRange), 10.0, kRoundingM);
   EXPECT_EQ(Of(features[0], PieceFeature::kReturns), 8.0F);
-  EXPECT_EQ(Of(features[0], PieceFeature::kColumns), 6.0F);
-  EXPECT_EQ(Of(features[0], PieceFeature::kRings), 2.0F);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kAngle), 8.0 * RadToDeg(kStepRad) * 2.0, kRoundingM);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kRise), 4.0, kRoundingM);
   EXPECT_NEAR(Of(features[0], PieceFeature::kWidth), 8.0 * kStepRad * 10.0, kRoundingM);
   EXPECT_NEAR(Of(features[0], PieceFeature::kDepth), depth_m, kRoundingM);
   EXPECT_NEAR(Of(features[0], PieceFeature::kTop), 1.5 + top_m, kRoundingM);

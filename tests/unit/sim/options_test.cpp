@@ -57,6 +57,15 @@ TEST(Options, RefusesWhatIsNoNumberOrOutOfRange) {
   }
 }
 
+TEST(Options, ChooseAHeadByEitherName) {
+  EXPECT_EQ(Parse({"--seconds", "1"}).lidar, "");
+  EXPECT_EQ(Parse({"--seconds", "1", "--lidar", "xt32"}).lidar, "xt32");
+  EXPECT_EQ(Parse({"--seconds", "1", "--model", "hi-res"}).lidar, "hi-res");
+  EXPECT_EXIT(Parse({"--seconds", "1", "--lidar", "os9"}), testing::ExitedWithCode(2), "--lidar");
+  EXPECT_EXIT(Parse({"--seconds", "1", "--model", "xt32"}), testing::ExitedWithCode(2), "--model");
+  EXPECT_EXIT(Parse({"--seconds", "1", "--out", "a.lcmlog"}), testing::ExitedWithCode(2), "--out");
+}
+
 TEST(Options, RefusesAFaultThatBeginsAfterTheEnd) { EXPECT_THROW(Parse({"--seconds", "1", "--fault", "gnss_gap:1:2"}), std::invalid_argument); }
 
 }  // namespace

@@ -56,6 +56,13 @@ TEST(SceneFile, RefusesNumbersThatAreNotFiniteOrOutOfRange) {
   EXPECT_EQ(FaultsOf(kHead + "effects {\n  stray_probability: 1.5\n}\n"), "s.txtpb:4: effects.stray_probability: must be at most 1 (is 1.5)");
 }
 
+TEST(SceneFile, ChoosesAHead) {
+  EXPECT_EQ(ParseScene(kHead, "s.txtpb", 1).lidar, "vlp16");
+  EXPECT_EQ(ParseScene(kHead + "lidar: \"os1-64\"\n", "s.txtpb", 1).lidar, "os1-64");
+  EXPECT_EQ(FaultsOf(kHead + "lidar: \"os9\"\n"),
+            "s.txtpb:3: lidar: there is no such head; there are: vlp16, hi-res, vlp-32c, hdl-32e, os1-64, os1-128, xt32, qt64");
+}
+
 TEST(SceneFile, RefusesRangesThatAreNone) {
   EXPECT_EQ(ObjectFaults("kind: BUOY east_m: [30, 20]"), "s.txtpb:3: object[0].east_m: the range must run from the lesser to the greater value");
   EXPECT_EQ(ObjectFaults("kind: BUOY east_m: [10, 20, 30]"), "s.txtpb:3: object[0].east_m: must be a value or a range of two values");

@@ -1,5 +1,6 @@
 #include "services/lidar/core/driver/column_decoder.hpp"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -67,7 +68,9 @@ bool ColumnDecoder::OnDataPayload(Utime host_time, Bytes payload) {
     return Refuse(reader.reason() + (name.empty() ? "" : "; it seems to be of another sensor: " + std::string(name)));
   }
   ++state_->num_packets;
-  switch (state_->order.Add(host_time, packet_, Interned(reader))) {
+  const auto verdict = state_->order.Add(host_time, packet_, Interned(reader));
+  if (packet_.columns.empty()) return Refuse("the " + reader.head().model + " says of no column that it is good: it starts, or has shut down");
+  switch (verdict) {
     case PacketVerdict::kDuplicate:
       return Refuse("came twice");
     case PacketVerdict::kLate:
@@ -85,7 +88,10 @@ void ColumnDecoder::OnPacket(const PlacedColumns& placed) {
   if (placed.is_restart) state_->cutter.End(counts);
   const auto time = std::chrono::floor<microseconds>(placed.time);
   const auto stamp = std::chrono::floor<microseconds>(placed.packet->stamp);
-  const auto duration = std::chrono::floor<microseconds>(placed.packet->duration);
+  // It was sent after its last shot; behind that the head may be dark for long.
+  std::chrono::nanoseconds last_shot{0};
+  for (const auto& beam : placed.head->beams) last_shot = std::max(last_shot, beam.time_offset);
+  const auto duration = std::chrono::floor<microseconds>(std::max<std::chrono::nanoseconds>(placed.packet->columns.back().time + last_shot, {}));
   ClockReading clock;
   if (placed.head->stamp == StampKind::kPastHour) {
     state_->past_hour.OnDataPacket({.host_time = placed.host_time,

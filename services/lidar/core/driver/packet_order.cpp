@@ -18,6 +18,10 @@ constexpr nanoseconds kHour = std::chrono::hours(1);
 constexpr nanoseconds kMaxGap = std::chrono::seconds(1);
 // Datagrams may wait in a network for so long: the host's clock tells of no smaller step.
 constexpr nanoseconds kHostResolution = std::chrono::milliseconds(20);
+// No packet is shorter: stamps that stand still do not make a gap of millions of packets.
+constexpr nanoseconds kMinDuration = std::chrono::microseconds(10);
+// Numbers that are farther ahead are of another stream.
+constexpr std::int64_t kMaxMissingNumbers = 4096;
 // Behind the last packet by more than so many, a number is of another stream.
 constexpr std::int64_t kMaxLateNumbers = 512;
 constexpr double kSameSectorRad = DegToRad(2.0);
@@ -26,7 +30,8 @@ constexpr std::size_t kMaxSectors = 8;
 
 // The way from one stamp to another; of stamps past the hour within half an hour to either side.
 nanoseconds Difference(StampKind kind, nanoseconds from, nanoseconds to) {
-  if (kind == StampKind::kAbsolute) return to - from;
+  if (kind == StampKind::kAbsolute)
+    return std::clamp(to / 2 - from / 2, -kHour, kHour) == to / 2 - from / 2 ? to - from : (to > from ? kHour : -kHour);
   nanoseconds difference = (to - from) % kHour;
   if (difference >= kHour / 2) difference -= kHour;
   if (difference < -kHour / 2) difference += kHour;
@@ -42,7 +47,10 @@ double ApartRad(double one_rad, double other_rad) { return std::abs(std::remaind
 }  // namespace
 
 PacketOrder::Mark PacketOrder::MarkOf(const Packet& packet, const Head& head) {
-  Mark mark{.stamp = packet.stamp, .duration = std::max(packet.duration, nanoseconds(1)), .number = packet.number, .stamp_kind = head.stamp};
+  Mark mark{.stamp = packet.stamp,
+            .duration = std::clamp<nanoseconds>(packet.duration, kMinDuration, kMaxGap),
+            .number = packet.number,
+            .stamp_kind = head.stamp};
   if (!packet.columns.empty()) {
     mark.has_columns = true;
     mark.first_azimuth_rad = packet.columns.front().azimuth_rad;
@@ -116,7 +124,7 @@ void PacketOrder::Flush() {
 }
 
 std::optional<SensorTime> PacketOrder::TimeOfStamp(Utime host_time, microseconds stamp) const {
-  if (!last_ || std::chrono::abs(host_time - last_->host_time) > kMaxGap) return std::nullopt;
+  if (!last_ || std::chrono::abs(host_time - last_->host_time) > std::chrono::duration_cast<microseconds>(kMaxGap)) return std::nullopt;
   return std::chrono::floor<microseconds>(last_->time + Difference(StampKind::kPastHour, last_->mark.stamp, stamp));
 }
 
@@ -145,15 +153,18 @@ std::optional<PacketOrder::Place> PacketOrder::PlaceByNumber(Utime host_time, co
   if (way > modulus / 2) way -= modulus;
   if (way < -(modulus / 2)) way += modulus;
   if (way == 0) return difference == nanoseconds(0) ? std::optional(Place{Kind::kDuplicate, last_->time, 0}) : std::nullopt;
-  const auto expected = way * last_->mark.duration;
   if (way < 0) {
     const bool is_late = way >= -kMaxLateNumbers && difference <= nanoseconds(0) && difference >= -kMaxGap;
     return is_late ? Place{Kind::kLate, last_->time + difference, 0} : Place{Kind::kRestart, {}, 0};
   }
-  if (way > 1 && expected > kMaxGap) return Place{Kind::kRestart, {}, 0};
+  if (way > kMaxMissingNumbers) return Place{Kind::kRestart, {}, 0};
+  // The last packet of a window has the duration of all that is dark behind it: the true time may be less.
+  const auto expected = way * last_->mark.duration;
   const auto num_lost = static_cast<int>(way - 1);
   const auto kind = num_lost > 0 ? Kind::kMissing : Kind::kNext;
   if (IsClockSet(host_time, expected, difference)) return Place{num_lost > 0 ? Kind::kRestart : Kind::kStep, last_->time + expected, num_lost};
+  // A clock that is set back by a little at a time (PTP): the numbers go on.
+  if (way == 1 && difference <= nanoseconds(0) && difference >= -kMaxGap) return Place{Kind::kStep, last_->time + expected, 0};
   if (difference <= nanoseconds(0) || difference > kMaxGap) return Place{Kind::kRestart, {}, 0};
   return Place{kind, last_->time + difference, num_lost};
 }
@@ -161,7 +172,7 @@ std::optional<PacketOrder::Place> PacketOrder::PlaceByNumber(Utime host_time, co
 // Whether the sensor's clock was set, where `expected` should have passed by it: the host's clock is nearer to that than to the difference.
 bool PacketOrder::IsClockSet(Utime host_time, nanoseconds expected, nanoseconds difference) const {
   if (std::chrono::abs(difference - expected) < kHostResolution) return false;
-  const nanoseconds elapsed = host_time - last_->host_time;
+  const nanoseconds elapsed = std::clamp<microseconds>(host_time - last_->host_time, -microseconds(std::chrono::hours(1)), std::chrono::hours(1));
   return std::chrono::abs(elapsed - expected) < std::chrono::abs(elapsed - difference);
 }
 
@@ -227,8 +238,8 @@ void PacketOrder::Give(Utime host_time, const Packet& packet, const Head& head, 
     if (place.kind == Kind::kNext && place.num_lost == 0 && mark.has_columns && last_->mark.has_columns) {
       constexpr double kShare = 1.0 / 16.0;
       const double rate_radps = TurnRad(last_->mark.first_azimuth_rad, mark.first_azimuth_rad) / ToSeconds(place.time - last_->time);
-      constexpr double kMaxRateRadps = 40.0 * kTwoPi;
-      if (rate_radps < kMaxRateRadps) rate_radps_ += (rate_radps - rate_radps_) * (rate_radps_ > 0.0 ? kShare : 1.0);
+      constexpr double kFastestRadps = 40.0 * kTwoPi;
+      if (rate_radps < kFastestRadps) rate_radps_ += (rate_radps - rate_radps_) * (rate_radps_ > 0.0 ? kShare : 1.0);
     }
   }
   known_.at(next_known_) = {mark.stamp, mark.first_azimuth_rad};

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +53,7 @@ class HesaiReader : public PacketReader {
   HesaiReader(HesaiModel model, const std::vector<HesaiAngle>& angles);
   explicit HesaiReader(HesaiModel model) : HesaiReader(model, NominalHesaiAngles(model)) {}
 
+  std::unique_ptr<PacketReader> Clone() const override { return std::make_unique<HesaiReader>(*this); }
   PacketFault Read(Bytes payload, Packet& packet) override;
   const Head& head() const override { return head_; }
   int head_number() const override { return head_number_; }

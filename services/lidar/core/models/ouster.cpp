@@ -32,6 +32,7 @@ constexpr std::array kOusterProfiles{OusterProfile::kLegacy, OusterProfile::kSin
                                      OusterProfile::kFusaDual};
 
 // Columns are 24 us to 0.4 ms apart.
+constexpr int kOusterShortTurns = 3;
 constexpr std::uint64_t kOusterMaxPacketNs = 1'000'000'000;
 constexpr std::uint64_t kOusterMaxStampNs = std::uint64_t{1} << 62;  // the year 2116
 
@@ -332,8 +333,11 @@ bool OusterReader::HasShortTurns(std::uint32_t frame) {
     const std::int64_t columns_by_id = first.id + num_columns - last_turning_->id;
     const auto elapsed_ns = static_cast<std::int64_t>(std::min(first.stamp_ns - last_turning_->stamp_ns, kOusterMaxPacketNs));
     const std::int64_t columns_by_time = elapsed_ns / std::max<std::int64_t>(1, static_cast<std::int64_t>(now.column_ns));
-    if (now.column_ns > 0 && columns_by_id - columns_by_time > num_columns / 4)
-      short_turn_columns_ = last_turning_->id + metadata_.columns_per_packet;
+    // Once, it may be a clock that was set back.
+    const bool is_short = now.column_ns > 0 && columns_by_id - columns_by_time > num_columns / 4;
+    num_short_turns_ = is_short ? num_short_turns_ + 1 : 0;
+    if (num_short_turns_ >= kOusterShortTurns) short_turn_columns_ = last_turning_->id + metadata_.columns_per_packet;
+    if (num_short_turns_ == 0) short_turn_columns_ = 0;
   }
   if (last.id >= short_turn_columns_) short_turn_columns_ = 0;
   last_turning_ = now;

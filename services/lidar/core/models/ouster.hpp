@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ class OusterReader final : public PacketReader {
  public:
   explicit OusterReader(const OusterMetadata& metadata);
 
+  std::unique_ptr<PacketReader> Clone() const override { return std::make_unique<OusterReader>(*this); }
   PacketFault Read(Bytes payload, Packet& packet) override;
   const Head& head() const override { return head_; }
   int head_number() const override { return 0; }
@@ -84,6 +86,7 @@ class OusterReader final : public PacketReader {
   std::uint64_t first_stamp_ns_ = 0;
 
   std::optional<Turning> last_turning_;
+  int num_short_turns_ = 0;     // in a row
   int short_turn_columns_ = 0;  // with which turns end that are shorter than the metadata say; 0: they are not
 
   bool has_checksum_ = false;

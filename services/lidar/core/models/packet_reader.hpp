@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -86,6 +87,9 @@ enum class PacketFault {
 class PacketReader {
  public:
   virtual ~PacketReader() = default;
+
+  /// Another one as it is now: of one that has read nothing, without what its beam file costs.
+  virtual std::unique_ptr<PacketReader> Clone() const = 0;
 
   /// Reads a data packet as a whole, or changes nothing but the reason. Bytes of any kind may come.
   ///

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,7 @@ class VelodyneReader : public PacketReader {
  public:
   explicit VelodyneReader(VelodyneModel model);
 
+  std::unique_ptr<PacketReader> Clone() const override { return std::make_unique<VelodyneReader>(*this); }
   PacketFault Read(Bytes payload, Packet& packet) override;
   const Head& head() const override { return head_; }
   int head_number() const override { return head_number_; }

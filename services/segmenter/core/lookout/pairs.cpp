@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/core/angles.hpp"
+
 namespace lookout::segmenter {
 
 namespace {
@@ -359,13 +361,15 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
   const double radial_m = std::max(0.0F, contact.greater_range_m - contact.lesser_range_m);
   int columns = std::abs(front.column - back.column);
   columns = std::min(columns, grid.num_columns() - columns);
-  const int ring_gap = std::max({0, front.min_ring - back.max_ring, back.min_ring - front.max_ring});
+  const double front_over_back_rad = grid.ElevationOf(front.min_ring) - grid.ElevationOf(back.max_ring);
+  const double back_over_front_rad = grid.ElevationOf(back.min_ring) - grid.ElevationOf(front.max_ring);
+  const double ring_step_rad = grid.RingStepAt(-lidar_above_water_m_ / std::max(1e-3, range_m));  // where water would be met
   set(PairFeature::kRange, range_m);
   set(PairFeature::kGap, pair.gap_m);
-  set(PairFeature::kGapColumns, columns);
+  set(PairFeature::kGapAngle, columns * RadToDeg(grid.column_step_rad()));
   set(PairFeature::kRadialGap, radial_m);
-  set(PairFeature::kRadialGapRings, radial_m * lidar_above_water_m_ / std::max(1e-6, range_m * range_m * grid.ring_step_rad()));
-  set(PairFeature::kRingGap, ring_gap);
+  set(PairFeature::kRadialGapRings, radial_m * lidar_above_water_m_ / std::max(1e-6, range_m * range_m * ring_step_rad));
+  set(PairFeature::kRiseGap, RadToDeg(std::max({0.0, front_over_back_rad, back_over_front_rad})));
   set(PairFeature::kStepUp, back.min_height_m - front.max_height_m);
 
   const PieceFacts& a = pieces[pair.one];
@@ -403,8 +407,8 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
   const bool is_a_small = a.width_m < b.width_m || (a.width_m == b.width_m && a.num_returns < b.num_returns);
   const PieceFacts& small = is_a_small ? a : b;
   const PieceFacts& large = is_a_small ? b : a;
-  set(PairFeature::kSmallReturns, small.num_returns);
-  set(PairFeature::kLargeReturns, large.num_returns);
+  set(PairFeature::kSmallAngle, grid.SquareDegreesOf(small.weight));
+  set(PairFeature::kLargeAngle, grid.SquareDegreesOf(large.weight));
   set(PairFeature::kSmallWidth, small.width_m);
   set(PairFeature::kLargeWidth, large.width_m);
   set(PairFeature::kSmallDepth, small.max_range_m - small.min_range_m);

@@ -20,27 +20,27 @@ enum class PairFeature : std::uint8_t {
   kRange,           // m, where the two come closest
   kGap,             // m, seen from above
   kFreeGap,         // m, the part of the gap that nothing nearer hides
-  kGapColumns,      // columns between them there; 0 where they share columns
+  kGapAngle,        // deg, between their columns there; 0 where they share columns
   kRadialGap,       // m, how much farther the back is there
   kRadialGapRings,  // the same over the distance at which the next ring would meet calm water
-  kRingGap,         // rings between them there; 0 where they share rings
+  kRiseGap,         // deg, between their rings there; 0 where they share rings
   kStepUp,          // m, from the top of the front to the bottom of the back, there
   kOverlap,         // columns that their arcs share, over those of the lesser arc
   kFaced,           // columns in which one stands within a metre of the other, over those of the lesser arc
   kSeenThrough,     // share of the beams between them that met something farther than both
   kHidden,          // share of the beams between them that met something nearer than both
-  kSmallReturns,
-  kLargeReturns,
-  kSmallWidth,   // m, across the line of sight
-  kLargeWidth,   // m
-  kSmallDepth,   // m, along the line of sight
-  kLargeDepth,   // m
-  kUnionLength,  // m, at most: distance of the means and both radii
-  kSmallTop,     // m
-  kLargeTop,     // m
-  kSmallBottom,  // m
-  kLargeBottom,  // m
-  kSmallFill,    // returns over beams between its ends
+  kSmallAngle,      // deg^2, the part of the sphere that its beams see
+  kLargeAngle,      // deg^2
+  kSmallWidth,      // m, across the line of sight
+  kLargeWidth,      // m
+  kSmallDepth,      // m, along the line of sight
+  kLargeDepth,      // m
+  kUnionLength,     // m, at most: distance of the means and both radii
+  kSmallTop,        // m
+  kLargeTop,        // m
+  kSmallBottom,     // m
+  kLargeBottom,     // m
+  kSmallFill,       // returns over beams between its ends
   kLargeFill,
   kOffLine,      // m, from the mean of the small to the line through the large
   kLargeOff,     // m, root mean square of the large off that line
@@ -54,8 +54,8 @@ enum class PairFeature : std::uint8_t {
 inline constexpr std::size_t kNumPairFeatures = static_cast<std::size_t>(PairFeature::kNum);
 /// As they stand in the file of weights.
 inline constexpr std::array<std::string_view, kNumPairFeatures> kPairFeatureNames{
-    "range_m",       "gap_m",         "free_gap_m",     "gap_columns",    "radial_gap_m",   "radial_gap_rings", "ring_gap",       "step_up_m",
-    "overlap",       "faced",         "seen_through",   "hidden",         "small_returns",  "large_returns",    "small_width_m",  "large_width_m",
+    "range_m",       "gap_m",         "free_gap_m",     "gap_deg",        "radial_gap_m",   "radial_gap_rings", "rise_gap_deg",   "step_up_m",
+    "overlap",       "faced",         "seen_through",   "hidden",         "small_deg2",     "large_deg2",       "small_width_m",  "large_width_m",
     "small_depth_m", "large_depth_m", "union_length_m", "small_top_m",    "large_top_m",    "small_bottom_m",   "large_bottom_m", "small_fill",
     "large_fill",    "off_line_m",    "large_off_m",    "large_length_m", "small_length_m", "parallel",         "top_step_m",     "bottom_step_m"};
 

@@ -1,7 +1,10 @@
 #include "services/segmenter/core/lookout/piece_features.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
+
+#include "common/core/angles.hpp"
 
 namespace lookout::segmenter {
 
@@ -9,7 +12,9 @@ namespace {
 
 constexpr float kBackdropM = 5.0F;
 constexpr float kCrowdM = 3.0F;
-constexpr int kCrowdColumns = 8;
+constexpr double kCrowdRad = DegToRad(1.6);
+constexpr int kMostCrowdColumns = 16;
+constexpr double kCrowdBeams = 272.0;  // 17 columns of 16 rings
 constexpr std::int32_t kCrowdReturns = 2;
 constexpr double kLeastDepthM = 0.1;
 
@@ -19,6 +24,12 @@ constexpr std::size_t kMostInColumn = 24;
 std::span<const OutlineEntry> SeenIn(const PieceTable& pieces, int column) {
   const auto seen = pieces.InColumn(column);
   return seen.first(std::min(seen.size(), kMostInColumn));
+}
+
+// To each side.
+int CrowdColumns(const ScanGrid& grid) {
+  const double columns = std::round(kCrowdRad / std::max(1e-4, grid.column_step_rad()));
+  return std::clamp(static_cast<int>(columns), 1, kMostCrowdColumns);
 }
 
 }  // namespace
@@ -41,10 +52,11 @@ void PieceMeasurer::LookAround(const ScanGrid& grid, const PieceTable& pieces) {
     few_.begin_of_column.push_back(few_.piece.size());
   }
   if (few_.piece.empty()) return;
+  const int crowd_columns = CrowdColumns(grid);
   for (int column = 0; column < grid.num_columns(); ++column) {
     // Over the seam, too.
-    const int first = column - kCrowdColumns;
-    const int end = column + kCrowdColumns + 1;
+    const int first = column - crowd_columns;
+    const int end = column + crowd_columns + 1;
     for (const OutlineEntry& entry : SeenIn(pieces, column)) {
       int crowd = few_.NumAbout(entry, std::max(first, 0), std::min(end, grid.num_columns()));
       if (first < 0) crowd += few_.NumAbout(entry, first + grid.num_columns(), grid.num_columns());
@@ -69,6 +81,7 @@ int PieceMeasurer::Few::NumAbout(const OutlineEntry& entry, int first_column, in
 std::span<const PieceFeatures> PieceMeasurer::Measure(const ScanGrid& grid, const PieceTable& pieces, double lidar_above_water_m) {
   features_.assign(static_cast<std::size_t>(pieces.size()), {});
   LookAround(grid, pieces);
+  const double crowd_scale = kCrowdBeams / ((2.0 * CrowdColumns(grid) + 1.0) * grid.num_rings());
   for (std::int32_t piece = 0; piece < pieces.size(); ++piece) {
     const PieceFacts& facts = pieces[piece];
     const auto set = [&](PieceFeature feature, double value) { Of(piece, feature) = FeatureOf(value); };
@@ -78,8 +91,9 @@ std::span<const PieceFeatures> PieceMeasurer::Measure(const ScanGrid& grid, cons
     const int num_rings = facts.max_ring - facts.min_ring + 1;
     set(PieceFeature::kRange, facts.min_range_m);
     set(PieceFeature::kReturns, facts.num_returns);
-    set(PieceFeature::kColumns, num_columns);
-    set(PieceFeature::kRings, num_rings);
+    set(PieceFeature::kAngle, grid.SquareDegreesOf(facts.weight));
+    set(PieceFeature::kRise, RadToDeg(grid.ElevationOf(facts.max_ring) - grid.ElevationOf(facts.min_ring) +
+                                      (grid.RingStepOf(facts.max_ring) + grid.RingStepOf(facts.min_ring)) / 2.0));
     set(PieceFeature::kWidth, facts.width_m);
     set(PieceFeature::kDepth, depth_m);
     set(PieceFeature::kLength, facts.length_m);
@@ -93,7 +107,7 @@ std::span<const PieceFeatures> PieceMeasurer::Measure(const ScanGrid& grid, cons
     set(PieceFeature::kGaps, 1.0 - num_columns / facts.arc.num);
     set(PieceFeature::kBackdrop, Of(piece, PieceFeature::kBackdrop) / num_columns);
     set(PieceFeature::kCovered, Of(piece, PieceFeature::kCovered) / num_columns);
-    set(PieceFeature::kCrowd, Of(piece, PieceFeature::kCrowd) / num_columns);
+    set(PieceFeature::kCrowd, Of(piece, PieceFeature::kCrowd) / num_columns * crowd_scale);
   }
   return features_;
 }

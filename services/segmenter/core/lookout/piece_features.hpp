@@ -16,8 +16,8 @@ namespace lookout::segmenter {
 enum class PieceFeature : std::uint8_t {
   kRange,  // m, of its nearest return
   kReturns,
-  kColumns,   // in which it has a return
-  kRings,     // from its lowest to its highest
+  kAngle,     // deg^2, the part of the sphere that its beams see
+  kRise,      // deg, from below its lowest ring to above its highest
   kWidth,     // m, across the line of sight
   kDepth,     // m, along the line of sight
   kLength,    // m, of the line through it
@@ -31,13 +31,14 @@ enum class PieceFeature : std::uint8_t {
   kGaps,      // share of the columns of its arc in which it has no return
   kBackdrop,  // share of its columns in which something stands at most 5 m behind
   kCovered,   // share of its columns in which something of more than two returns stands nearer
-  kCrowd,     // pieces of one or two returns within 3 m of range and 8 columns of one of its columns, per column
+  kCrowd,     // pieces of one or two returns within 3 m of range and 1.6 deg of one of its columns: as many as 272 beams there would meet, as of a
+              // VLP-16
   kNum
 };
 inline constexpr std::size_t kNumPieceFeatures = static_cast<std::size_t>(PieceFeature::kNum);
 inline constexpr std::array<std::string_view, kNumPieceFeatures> kPieceFeatureNames{
-    "range_m",  "returns",  "columns", "rings", "width_m",  "depth_m", "length_m", "off_m",   "top_m",
-    "bottom_m", "middle_m", "slope",   "fill",  "box_fill", "gaps",    "backdrop", "covered", "crowd"};
+    "range_m",  "returns",  "deg2",  "rise_deg", "width_m",  "depth_m", "length_m", "off_m",   "top_m",
+    "bottom_m", "middle_m", "slope", "fill",     "box_fill", "gaps",    "backdrop", "covered", "crowd"};
 using PieceFeatures = std::array<float, kNumPieceFeatures>;
 
 /// No water gives so many groups; in heavy rain there are 4000. Where a scan has more, those of one or two returns are clutter, whatever is measured.

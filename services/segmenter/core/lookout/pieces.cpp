@@ -75,6 +75,7 @@ void PieceTable::SumReturns(const ScanGrid& grid) {
     sums.yy_m2 += double{point.y_m} * point.y_m;
     PieceFacts& facts = facts_[piece];
     ++facts.num_returns;
+    facts.weight += grid.WeightOfRing(ring);
     facts.min_range_m = std::min(facts.min_range_m, point.range_m);
     facts.max_range_m = std::max(facts.max_range_m, point.range_m);
     facts.min_height_m = std::min(facts.min_height_m, point.height_m);
@@ -166,6 +167,7 @@ void PieceTable::MergeFacts(std::span<const std::int32_t> group_of_piece, std::i
     PieceFacts& facts = facts_[group];
     const PieceFacts& other = facts_[piece];
     facts.num_returns += other.num_returns;
+    facts.weight += other.weight;
     facts.min_range_m = std::min(facts.min_range_m, other.min_range_m);
     facts.max_range_m = std::max(facts.max_range_m, other.max_range_m);
     facts.min_height_m = std::min(facts.min_height_m, other.min_height_m);

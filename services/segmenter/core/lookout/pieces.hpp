@@ -42,6 +42,7 @@ inline float FeatureOf(double value) {
 
 struct PieceFacts {
   std::int32_t num_returns = 0;
+  std::int64_t weight = 0;       // sum of ScanGrid::WeightOfRing
   std::int32_t num_columns = 0;  // in which it has a return
   std::int32_t num_beams = 0;    // between its ends, over its lines: num_returns where every beam met it
   std::int32_t min_ring = 0;

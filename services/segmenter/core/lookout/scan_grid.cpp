@@ -26,9 +26,7 @@ void ScanGrid::Fill(const Scan& scan, std::span<const Return> returns, const Eig
   num_layers_ = scan.head.num_returns;
   num_lines_ = scan.head.num_rings() * num_layers_;
   MeasureColumns(scan);
-  const auto& rings = scan.head.rings;
-  ring_step_rad_ =
-      rings.size() < 2 ? 0.0 : (double{rings.back().elevation_rad} - rings.front().elevation_rad) / static_cast<double>(rings.size() - 1);
+  MeasureRings(scan);
   return_at_.assign(static_cast<std::size_t>(num_lines_) * static_cast<std::size_t>(num_columns_), kNone);
   range_at_.assign(return_at_.size(), std::numeric_limits<float>::infinity());
   words_per_line_ = static_cast<std::size_t>((num_columns_ + kWordBits - 1) / kWordBits);
@@ -94,6 +92,30 @@ void ScanGrid::MeasureColumns(const Scan& scan) {
     is_shifted_ = is_shifted_ || std::abs(double{ring.azimuth_offset_rad}) > step_rad;
     shift_of_.push_back(std::clamp(shift, -num_columns_ + 1, num_columns_ - 1));
   }
+}
+
+void ScanGrid::MeasureRings(const Scan& scan) {
+  const auto& rings = scan.head.rings;
+  const std::size_t num = rings.size();
+  elevation_rad_.resize(num);
+  ring_step_rad_.resize(num);
+  weight_of_ring_.resize(num);
+  for (std::size_t ring = 0; ring < num; ++ring) elevation_rad_[ring] = double{rings[ring].elevation_rad};
+  for (std::size_t ring = 0; ring < num; ++ring) {
+    const std::size_t below = ring == 0 ? ring : ring - 1;
+    const std::size_t above = ring + 1 == num ? ring : ring + 1;
+    const double step_rad =
+        below == above ? kLoneRingStepRad : std::abs(elevation_rad_[above] - elevation_rad_[below]) / static_cast<double>(above - below);
+    ring_step_rad_[ring] = step_rad;
+    weight_of_ring_[ring] = static_cast<std::int32_t>(std::lround(step_rad * 1e6));
+  }
+}
+
+double ScanGrid::RingStepAt(double elevation_rad) const {
+  const auto above = std::ranges::lower_bound(elevation_rad_, elevation_rad);
+  auto ring = static_cast<std::size_t>(above - elevation_rad_.begin());
+  if (ring == elevation_rad_.size() || (ring > 0 && elevation_rad - elevation_rad_[ring - 1] < elevation_rad_[ring] - elevation_rad)) --ring;
+  return ring_step_rad_[ring];
 }
 
 void ScanGrid::SortByColumn() {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "common/core/angles.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/core/scan.hpp"
 
@@ -55,8 +56,17 @@ class ScanGrid {
   int RingOf(int line) const { return num_layers_ == 1 ? line : line / 2; }  // a division by a number unknown at compile time takes long
   /// The usual angle from a column to the next: the median round the circle, so that holes and the cut of the scan do not count.
   double column_step_rad() const { return column_step_rad_; }
-  /// The mean angle from a ring to the next; 0 where there is one ring.
-  double ring_step_rad() const { return ring_step_rad_; }
+  int num_rings() const { return static_cast<int>(elevation_rad_.size()); }
+  double ElevationOf(int ring) const { return elevation_rad_[static_cast<std::size_t>(ring)]; }
+  /// The angle from a ring to the next, mean of both sides; rings of many lidars are not equally far apart. kLoneRingStepRad where there is one ring.
+  double RingStepOf(int ring) const { return ring_step_rad_[static_cast<std::size_t>(ring)]; }
+  /// The same at the ring that is nearest to an elevation.
+  double RingStepAt(double elevation_rad) const;
+  static constexpr double kLoneRingStepRad = DegToRad(2.0);
+  /// The part of the sphere that beams of a ring see, over the width of a column: RingStepOf in whole microradians, so that sums of it are exact.
+  std::int32_t WeightOfRing(int ring) const { return weight_of_ring_[static_cast<std::size_t>(ring)]; }
+  /// A sum of weights as square degrees.
+  double SquareDegreesOf(std::int64_t weight) const { return RadToDeg(static_cast<double>(weight) * 1e-6) * RadToDeg(column_step_rad_); }
 
   int Wrap(int column) const { return column < 0 ? column + num_columns_ : column < num_columns_ ? column : column - num_columns_; }
   /// @param column  0 to num_columns() - 1
@@ -97,15 +107,18 @@ class ScanGrid {
   static constexpr int kWordBits = 64;
 
   void MeasureColumns(const Scan& scan);
+  void MeasureRings(const Scan& scan);
   void SortByColumn();
 
   int num_lines_ = 0;
   int num_columns_ = 0;
   int num_layers_ = 1;
   double column_step_rad_ = 0.0;
-  double ring_step_rad_ = 0.0;
-  std::vector<std::int32_t> return_at_;  // [lines x columns]
-  std::vector<float> range_at_;          // [lines x columns]
+  std::vector<double> elevation_rad_;         // [rings]
+  std::vector<double> ring_step_rad_;         // [rings]
+  std::vector<std::int32_t> weight_of_ring_;  // [rings]
+  std::vector<std::int32_t> return_at_;       // [lines x columns]
+  std::vector<float> range_at_;               // [lines x columns]
   std::size_t words_per_line_ = 0;
   std::vector<std::uint64_t> occupied_;  // [lines x words] a bit for each column: whether there is a return
   std::vector<LevelPoint> points_;       // [returns]
