@@ -139,6 +139,7 @@ LiveOptions ToLiveOptions(const Params& params) {
           .filter = params.sources.bpf_filter,
           .data_port = params.data_port,
           .position_port = params.position_port,
+          .has_large_packets = params.other && params.other->model == OtherModel::kOuster,
           .receive_buffer_bytes = params.sources.receive_buffer_bytes,
           .allowed_source_addresses = params.sources.allowed_source_addresses};
 }

@@ -12,8 +12,11 @@ namespace lookout::lidar {
 
 namespace {
 
-// Whole frames: on the loopback interface and on those for jumbo frames a datagram of an Ouster, of up to 25 kB, is one.
-constexpr int kSnapLengthBytes = 65'535;
+// A data packet of most lidars takes up to 1300 bytes with its headers, 8 more with two VLAN tags, and larger ones come in fragments of 1514. On the
+// loopback interface and on those for jumbo frames a datagram of an Ouster, of up to 25 kB, is one frame. Frames that are longer take more of the
+// ring.
+constexpr int kSnapLengthBytes = 2048;
+constexpr int kJumboSnapLengthBytes = 65'535;
 
 // Compiles and, with a live handle, installs it.
 std::string ApplyFilter(pcap_t* capture, const std::string& filter, bool is_installed) {
@@ -71,7 +74,7 @@ std::string LiveCapture::Open() {
   CaptureHandle opened(pcap_create(options_.interface.c_str(), fault.data()), &pcap_close);
   if (!opened) return where + fault.data();
   pcap_t* capture = opened.get();
-  pcap_set_snaplen(capture, kSnapLengthBytes);
+  pcap_set_snaplen(capture, options_.has_large_packets ? kJumboSnapLengthBytes : kSnapLengthBytes);
   pcap_set_promisc(capture, 0);
   pcap_set_immediate_mode(capture, 1);  // a frame is there when it comes, not when a block of the ring is full
   pcap_set_buffer_size(capture, options_.receive_buffer_bytes);

@@ -20,6 +20,7 @@ struct LiveOptions {
   std::string filter;     // pcap-filter(7); empty = FilterOfPorts
   int data_port = 0;
   int position_port = 0;
+  bool has_large_packets = false;                     // above 1472 bytes
   int receive_buffer_bytes = 0;                       // of the ring that kernel and process share
   std::vector<std::string> allowed_source_addresses;  // as inet_ntop writes them; empty = all
 };
