@@ -30,6 +30,7 @@ std::vector<HeadBeam> BeamsOfVlp32c() {
 // Velodyne HDL-32E User Manual 63-9113: even lasers from -30.67 deg, odd ones from -9.33 deg, one each 1.152 us.
 std::vector<HeadBeam> BeamsOfHdl32e() {
   std::vector<HeadBeam> beams;
+  beams.reserve(32);
   for (int laser = 0; laser < 32; ++laser) {
     const double first_deg = laser % 2 == 0 ? -92.0 / 3.0 : -28.0 / 3.0;
     beams.push_back({first_deg + 4.0 / 3.0 * std::floor(laser / 2.0), 0.0, 1.152 * laser});
@@ -40,6 +41,7 @@ std::vector<HeadBeam> BeamsOfHdl32e() {
 // Ouster, gen 1 and 2: equal steps, four lines of beams side by side.
 std::vector<HeadBeam> BeamsOfOs1(int num_beams, double highest_deg, const std::array<double, 4>& offset_deg) {
   std::vector<HeadBeam> beams;
+  beams.reserve(static_cast<std::size_t>(num_beams));
   for (int beam = 0; beam < num_beams; ++beam) {
     beams.push_back({highest_deg - 2.0 * highest_deg * beam / (num_beams - 1), offset_deg[static_cast<std::size_t>(beam) % offset_deg.size()], 0.0});
   }
@@ -49,6 +51,7 @@ std::vector<HeadBeam> BeamsOfOs1(int num_beams, double highest_deg, const std::a
 // Hesai PandarXT-32 User Manual: 15 to -16 deg by 1 deg, a channel each 1.512 us.
 std::vector<HeadBeam> BeamsOfXt32() {
   std::vector<HeadBeam> beams;
+  beams.reserve(32);
   for (int channel = 0; channel < 32; ++channel) beams.push_back({15.0 - channel, 0.0, 0.368 + 1.512 * channel});
   return LowestFirst(std::move(beams));
 }
