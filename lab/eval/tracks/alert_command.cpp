@@ -64,7 +64,7 @@ void AddTo(AlertRun& run, const std::string& scene, std::string_view channel, By
 
 AlertScores ScoresOf(AlertRun& run, const std::string& scene) {
   run.Finish();
-  if (run.num_scans() == 0) throw std::runtime_error(scene + ": no scan with a known position");
+  if (!run.has_position()) throw std::runtime_error(scene + ": no scan with a known position");
   return run.scores();
 }
 

@@ -31,7 +31,8 @@ class AlertRun {
   void Finish();
 
   const AlertScores& scores() const { return scores_; }
-  std::int64_t num_scans() const { return judge_.scores().num_scans; }
+  /// Whether a scan had a known position. Of these some are not judged: those in which the own boat lies within a thing, as under a pier.
+  bool has_position() const { return judge_.scores().num_runs > 0; }
 
  private:
   bool OnTracks(const tracks_t& message);

@@ -4,12 +4,10 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <mutex>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 
-#include "common/io/network.hpp"
+#include "services/page/io/listener.hpp"
 #include "services/page/io/viewer.hpp"
 
 namespace lookout::page {
@@ -20,26 +18,24 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr std::chrono::milliseconds kViewerPauseAfterFault{100};
 constexpr std::chrono::seconds kViewerTickPeriod{1};
 constexpr std::chrono::milliseconds kMaxViewersEnding{700};
-constexpr int kViewerSendBufferBytes = 256 * 1024;
 constexpr std::size_t kMaxWaitingBytes = std::size_t{32} * 1024 * 1024;  // that the server's thread has not seen yet
 constexpr int kMaxStrangers = 16;                                        // connections that are no viewers, or not yet
 
 }  // namespace
 
 struct FoxgloveServer::Implementation {
-  explicit Implementation(FoxgloveOptions options) : hub(std::move(options)) {
-    const auto why_not = Listen();
-    if (!why_not.empty() && !hub.options.waits_for_port) throw std::runtime_error(why_not);
-    if (why_not.empty()) {
-      Accept();
-    } else {
-      ListenLater();
-    }
+  explicit Implementation(FoxgloveOptions options)
+      : hub(std::move(options)),
+        listener(
+            hub.context,
+            {.served = "Foxglove", .bind_address = hub.options.bind_address, .port = hub.options.port, .waits_for_port = hub.options.waits_for_port},
+            {.on_listening = {},
+             .on_socket = [this](tcp::socket socket) { Welcome(std::move(socket)); },
+             .on_fault = [this] { hub.counts->Add("foxglove_faults"); }}) {
     Tick();
-    thread = std::thread([this] { Run(); });
+    thread = std::thread([this] { RunThroughFaults(hub.context, [this] { hub.counts->Add("foxglove_faults"); }); });
   }
 
   ~Implementation() {
@@ -51,70 +47,13 @@ struct FoxgloveServer::Implementation {
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
 
-  // @return why not, for people; empty: it listens
-  std::string Listen() {
-    const auto& options = hub.options;
-    std::string why_not;
-    try {
-      const tcp::endpoint endpoint(asio::ip::make_address(options.bind_address), static_cast<std::uint16_t>(options.port));
-      acceptor.open(endpoint.protocol());
-      acceptor.set_option(tcp::acceptor::reuse_address(true));
-      acceptor.bind(endpoint);
-      acceptor.listen();
-      port = acceptor.local_endpoint().port();
-    } catch (const boost::system::system_error& error) {
-      error_code ignored;
-      acceptor.close(ignored);
-      why_not = "Foxglove cannot be served on " + options.bind_address + " port " + std::to_string(options.port) + ": " +
-                io::CannotListenText(error.code().value(), options.port);
+  void Welcome(tcp::socket socket) {
+    // Each has 5 s to ask.
+    if (hub.counts->Of("foxglove_connections") - hub.counts->Of("foxglove_clients") >= kMaxStrangers) {
+      return hub.counts->Add("foxglove_refused_full");
     }
-    const std::lock_guard lock(fault_mutex);
-    fault = why_not;
-    return why_not;
-  }
-
-  void ListenLater() {
-    pause.expires_after(io::kListenPause);
-    pause.async_wait([this](error_code) {
-      if (hub.is_ending) return;
-      if (Listen().empty()) return Accept();
-      ListenLater();
-    });
-  }
-
-  void Run() {
-    while (true) {
-      try {
-        hub.context.run();
-        return;
-      } catch (...) {
-        // Of one connection; most likely there was no memory.
-        hub.counts->Add("foxglove_faults");
-      }
-    }
-  }
-
-  void Accept() {
-    acceptor.async_accept([this](error_code error, tcp::socket socket) {
-      if (hub.is_ending) return;
-      if (error) {
-        hub.counts->Add("foxglove_faults");
-        pause.expires_after(kViewerPauseAfterFault);
-        pause.async_wait([this](error_code) {
-          if (!hub.is_ending) Accept();
-        });
-        return;
-      }
-      Accept();
-      // Each has 5 s to ask.
-      if (hub.counts->Of("foxglove_connections") - hub.counts->Of("foxglove_clients") >= kMaxStrangers)
-        return hub.counts->Add("foxglove_refused_full");
-      error_code ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
-      socket.set_option(asio::socket_base::keep_alive(true), ignored);
-      socket.set_option(asio::socket_base::send_buffer_size(kViewerSendBufferBytes), ignored);
-      std::make_shared<Viewer>(hub, std::move(socket))->Start();
-    });
+    SetServedOptions(socket);
+    std::make_shared<Viewer>(hub, std::move(socket))->Start();
   }
 
   // A viewer's action may take it off the list.
@@ -136,9 +75,7 @@ struct FoxgloveServer::Implementation {
 
   void End() {
     hub.is_ending = true;
-    error_code ignored;
-    acceptor.close(ignored);
-    pause.cancel();
+    listener.Close();
     ForEachViewer([](Viewer& viewer) { viewer.Close(boost::beast::websocket::close_code::going_away, "the server ends"); });
     end_since = std::chrono::steady_clock::now();
     AwaitEnd();
@@ -152,14 +89,10 @@ struct FoxgloveServer::Implementation {
   }
 
   ViewerHub hub;
-  tcp::acceptor acceptor{hub.context};
-  asio::steady_timer pause{hub.context};
+  Listener listener;
   asio::steady_timer tick{hub.context};
   Viewer::Time end_since{};
-  std::atomic<int> port = 0;
   std::atomic<std::size_t> num_waiting_bytes = 0;
-  mutable std::mutex fault_mutex;  // guards the next
-  std::string fault;
   std::thread thread;
 };
 
@@ -167,12 +100,9 @@ FoxgloveServer::FoxgloveServer(FoxgloveOptions options) : implementation_(std::m
 
 FoxgloveServer::~FoxgloveServer() = default;
 
-int FoxgloveServer::port() const { return implementation_->port; }
+int FoxgloveServer::port() const { return implementation_->listener.port(); }
 
-std::string FoxgloveServer::Fault() const {
-  const std::lock_guard lock(implementation_->fault_mutex);
-  return implementation_->fault;
-}
+std::string FoxgloveServer::Fault() const { return implementation_->listener.Fault(); }
 
 bool FoxgloveServer::IsWatched(std::size_t channel) const {
   const auto& num_watching = implementation_->hub.num_watching;

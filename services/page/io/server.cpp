@@ -8,7 +8,6 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <stdexcept>
 #include <thread>
 #include <tuple>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "services/page/io/client.hpp"
 #include "services/page/io/connection.hpp"
 #include "services/page/io/hub.hpp"
+#include "services/page/io/listener.hpp"
 
 namespace lookout::page {
 
@@ -27,27 +27,26 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr std::chrono::milliseconds kPauseAfterFault{100};
 constexpr std::chrono::seconds kTickPeriod{1};
 constexpr std::chrono::minutes kCrowdToldFor{1};
 constexpr std::chrono::milliseconds kMaxEnding{700};
-constexpr int kSendBufferBytes = 256 * 1024;
 constexpr std::size_t kMaxPublishedBytes = std::size_t{32} * 1024 * 1024;  // that the server's thread has not seen yet
 
 }  // namespace
 
 struct Server::Implementation {
-  Implementation(ServerOptions options, ServerParts parts) : hub(std::move(options), std::move(parts)) {
-    const auto fault = Listen();
-    if (!fault.empty() && !hub.options.waits_for_port) throw std::runtime_error(fault);
+  Implementation(ServerOptions options, ServerParts parts)
+      : hub(std::move(options), std::move(parts)),
+        listener(
+            hub.context,
+            {.served = "the page", .bind_address = hub.options.bind_address, .port = hub.options.port, .waits_for_port = hub.options.waits_for_port},
+            {.on_listening = [this](const tcp::endpoint& endpoint) { KnowOwnHosts(endpoint); },
+             .on_socket = [this](tcp::socket socket) { Welcome(std::move(socket)); },
+             .on_fault = [this] { hub.counts->Add("accept_faults"); }}) {
     if (hub.parts.recordings) hub.sources = hub.parts.recordings->SourcesText();
-    if (fault.empty()) {
-      Accept();
-    } else {
-      ListenLater();
-    }
     Tick();
-    thread = std::thread([this] { Run(); });
+    // A fault is of one connection, which ends by it.
+    thread = std::thread([this] { RunThroughFaults(hub.context, [this] { hub.counts->Add("faults"); }); });
   }
 
   ~Implementation() {
@@ -61,72 +60,11 @@ struct Server::Implementation {
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
 
-  // @return why not, for people; empty: it listens
-  std::string Listen() {
+  void KnowOwnHosts(const tcp::endpoint& endpoint) {
     const auto& options = hub.options;
-    try {
-      const tcp::endpoint endpoint(asio::ip::make_address(options.bind_address), static_cast<std::uint16_t>(options.port));
-      acceptor.open(endpoint.protocol());
-      acceptor.set_option(tcp::acceptor::reuse_address(true));
-      acceptor.bind(endpoint);
-      acceptor.listen();
-    } catch (const boost::system::system_error& error) {
-      error_code ignored;
-      acceptor.close(ignored);
-      return SetListenFault("the page cannot be served on " + options.bind_address + " port " + std::to_string(options.port) + ": " +
-                            io::CannotListenText(error.code().value(), options.port));
-    }
-    const bool is_v6 = acceptor.local_endpoint().address().is_v6();
-    hub.own_hosts.port = acceptor.local_endpoint().port();
-    hub.own_hosts.names = {"localhost", "127.0.0.1", "[::1]", is_v6 ? "[" + options.bind_address + "]" : options.bind_address};
+    hub.own_hosts.port = endpoint.port();
+    hub.own_hosts.names = {"localhost", "127.0.0.1", "[::1]", endpoint.address().is_v6() ? "[" + options.bind_address + "]" : options.bind_address};
     hub.own_hosts.names.insert(hub.own_hosts.names.end(), options.host_names.begin(), options.host_names.end());
-    port = acceptor.local_endpoint().port();
-    return SetListenFault({});
-  }
-
-  std::string SetListenFault(const std::string& fault) {
-    const std::lock_guard lock(faults_mutex);
-    listen_fault = fault;
-    return fault;
-  }
-
-  // The program that has the port may end, and an address may come later.
-  void ListenLater() {
-    accept_pause.expires_after(io::kListenPause);
-    accept_pause.async_wait([this](error_code) {
-      if (hub.is_ending) return;
-      if (Listen().empty()) return Accept();
-      ListenLater();
-    });
-  }
-
-  void Run() {
-    while (true) {
-      try {
-        hub.context.run();
-        return;
-      } catch (...) {
-        // Of one connection, which ends by it; most likely there was no memory.
-        hub.counts->Add("faults");
-      }
-    }
-  }
-
-  void Accept() {
-    acceptor.async_accept([this](error_code error, tcp::socket socket) {
-      if (hub.is_ending) return;
-      if (error) {
-        // No descriptor is left, say: others will close some.
-        hub.counts->Add("accept_faults");
-        accept_pause.expires_after(kPauseAfterFault);
-        accept_pause.async_wait([this](error_code) {
-          if (!hub.is_ending) Accept();
-        });
-        return;
-      }
-      Accept();
-      Welcome(std::move(socket));
-    });
   }
 
   void Welcome(tcp::socket socket) {
@@ -134,10 +72,7 @@ struct Server::Implementation {
       hub.counts->Add("connections_refused");
       return;
     }
-    error_code ignored;
-    socket.set_option(tcp::no_delay(true), ignored);
-    socket.set_option(asio::socket_base::keep_alive(true), ignored);
-    socket.set_option(asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
+    SetServedOptions(socket);
     std::make_shared<Connection>(hub, std::move(socket))->Start();
   }
 
@@ -203,9 +138,7 @@ struct Server::Implementation {
 
   void End() {
     hub.is_ending = true;
-    error_code ignored;
-    acceptor.close(ignored);
-    accept_pause.cancel();
+    listener.Close();
     ForEachClient([](Client& client) { client.Close(boost::beast::websocket::close_code::going_away, "the server ends"); });
     end_since = std::chrono::steady_clock::now();
     AwaitEnd();
@@ -219,13 +152,10 @@ struct Server::Implementation {
   }
 
   Hub hub;
-  tcp::acceptor acceptor{hub.context};
-  asio::steady_timer accept_pause{hub.context};
+  Listener listener;
   asio::steady_timer tick{hub.context};
   SteadyTime end_since{};
-  std::atomic<int> port = 0;
   mutable std::mutex faults_mutex;  // guards these members
-  std::string listen_fault;
   std::string crowd_text;
   std::optional<SteadyTime> crowded_at;
   std::atomic<bool> are_sources_new = false;
@@ -237,13 +167,13 @@ Server::Server(ServerOptions options, ServerParts parts) : implementation_(std::
 
 Server::~Server() = default;
 
-int Server::port() const { return implementation_->port; }
+int Server::port() const { return implementation_->listener.port(); }
 
 std::vector<std::string> Server::Faults() const {
   const auto& server = *implementation_;
   const std::lock_guard lock(server.faults_mutex);
   std::vector<std::string> faults;
-  if (!server.listen_fault.empty()) faults.push_back(server.listen_fault);
+  if (auto fault = server.listener.Fault(); !fault.empty()) faults.push_back(std::move(fault));
   if (server.crowded_at && std::chrono::steady_clock::now() - *server.crowded_at < kCrowdToldFor) faults.push_back(server.crowd_text);
   return faults;
 }

@@ -137,6 +137,20 @@ TEST(AlertRun, JudgesAlertsOfTheBusByThePlaceOfTheirTrack) {
   }
 }
 
+// A boat that lies under a pier is within its outline from the first scan on: nothing is judged, and that is no fault of the run.
+TEST(AlertRun, WithinAThingHasAPositionAndNoScanThatIsJudged) {
+  auto truth = TruthOfOneBoat();
+  truth.AddObject(2, {"pier", "pier", false, false});
+  truth.AddOutline(2, kStartUs, OnEarth(SquareAt({0.0, 0.0})));
+  AlertRun run(truth, kHullM, {}, [](const TruthSpan&) { return std::map<int, int>(); });
+  EXPECT_FALSE(run.has_position());
+  EXPECT_TRUE(run.Add(bus::kTracks.name, bus::Encode(Tracks(kStartUs, {30.0, 0.0}))));
+  EXPECT_TRUE(run.Add(bus::kAlerts.name, bus::Encode(Alerts(kStartUs, {}))));
+  run.Finish();
+  EXPECT_TRUE(run.has_position());
+  EXPECT_EQ(run.scores().num_scans, 0);
+}
+
 TEST(AlertRun, WhatCannotBeDecodedIsRefused) {
   const auto truth = TruthOfOneBoat();
   AlertRun run(truth, kHullM, {}, [](const TruthSpan&) { return std::map<int, int>(); });
@@ -159,7 +173,7 @@ TEST(AlertRun, OfASimulatedBerthHasNoAlert) {
               });
   chain.Finish();
   run->Finish();
-  EXPECT_NEAR(static_cast<double>(run->num_scans()), 39.0, 2.0);
+  EXPECT_NEAR(static_cast<double>(run->scores().num_scans), 39.0, 2.0);
   EXPECT_EQ(run->scores().NumAlerts(), 0);
   EXPECT_EQ(run->scores().NumDangers(), 0);
 }

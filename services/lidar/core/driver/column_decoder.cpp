@@ -23,19 +23,13 @@ class ReaderJudge final : public PacketJudge {
 
   Verdict Judge(Stream stream, Bytes payload) override {
     if (stream == Stream::kPosition) return payload.size() == position_size_bytes_ ? Verdict::kValid : Verdict::kInvalid;
-    if (!reader_->MayBe(payload.size())) return Verdict::kInvalid;
-    if (num_read_ >= kNumRead) return Verdict::kValid;
-    if (reader_->Read(payload, packet_) != PacketFault::kNone) return Verdict::kInvalid;
-    ++num_read_;
-    return Verdict::kValid;
+    return reader_->Read(payload, packet_) == PacketFault::kNone ? Verdict::kValid : Verdict::kInvalid;
   }
 
  private:
-  static constexpr int kNumRead = 8;
   std::unique_ptr<PacketReader> reader_;
   std::size_t position_size_bytes_;
   Packet packet_;
-  int num_read_ = 0;
 };
 
 }  // namespace

@@ -93,7 +93,7 @@ class ColumnDecoder final : public Decoder {
   double last_rate_radps_ = 0.0;
 };
 
-/// Judges by a reader of its own: the first packets as a whole, then by size, as the decoder reads all of them anyway.
+/// Judges data packets by a reader of its own, as a whole: junk of the right size is silence. That reads each packet twice.
 JudgeMaker MakeReaderJudge(std::function<std::unique_ptr<PacketReader>()> make_reader, std::size_t position_size_bytes);
 
 }  // namespace lookout::lidar
