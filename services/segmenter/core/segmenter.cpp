@@ -32,11 +32,15 @@ std::int32_t GroundOf(PieceFeature feature) {
     case PieceFeature::kBackdrop:
     case PieceFeature::kCovered:
     case PieceFeature::kCrowd:
+    case PieceFeature::kRough:
+    case PieceFeature::kLone:
       return kScattered;
     case PieceFeature::kTop:
     case PieceFeature::kBottom:
     case PieceFeature::kMiddle:
     case PieceFeature::kSlope:
+    case PieceFeature::kWaterBefore:
+    case PieceFeature::kBottomRings:
       return kAtSurface;
     case PieceFeature::kReturns:
     case PieceFeature::kAngle:

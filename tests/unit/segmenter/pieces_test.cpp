@@ -265,5 +265,36 @@ TEST(MeasurePieces, SaysHowDenseAndHowHighAPieceIs) {
   EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kGaps), 0.25F);
 }
 
+// A hull is smooth, foam is rough and full of holes.
+TEST(MeasurePieces, SaysHowRoughAPieceIsAlongItsRings) {
+  PieceScene scene;
+  for (int column = -2; column < 2; ++column) scene.Add(0, column, 1, column % 2 == 0 ? 10.0 : 10.1);  // over the seam
+  scene.AddRow(1, 50, 5, 1, 10.0);
+  for (int column = 100; column < 106; column += 2) scene.Add(2, column, 1, 10.0);
+  scene.AddRow(2, 106, 2, 2, 10.0);
+  scene.Build();
+  PieceMeasurer measurer;
+  const auto features = measurer.Measure(scene.grid, scene.pieces, 1.5);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kRough), 0.2, kRoundingM);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kLone), 0.0F);
+  EXPECT_FLOAT_EQ(Of(features[1], PieceFeature::kRough), 0.0F);
+  EXPECT_FLOAT_EQ(Of(features[2], PieceFeature::kRough), -1.0F);
+  EXPECT_NEAR(Of(features[2], PieceFeature::kLone), 3.0 / 5.0, kRoundingM);
+}
+
+// What floats is met by the lowest beam that passes over the water before it.
+TEST(MeasurePieces, SaysWhatTheBeamBelowMet) {
+  PieceScene scene;
+  scene.AddRow(0, 200, 4, 2, 20.0);
+  scene.Add(1, 201, 1, 10.0);
+  scene.Add(2, 202, 1, 30.0);
+  scene.Build();
+  PieceMeasurer measurer;
+  const auto features = measurer.Measure(scene.grid, scene.pieces, 1.5);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kWaterBefore), 0.25F);
+  EXPECT_FLOAT_EQ(Of(features[1], PieceFeature::kWaterBefore), 0.0F);
+  EXPECT_NEAR(Of(features[1], PieceFeature::kBottomRings), 1.5 / (DegToRad(2.0) * 10.0), kRoundingM);
+}
+
 }  // namespace
 }  // namespace lookout::segmenter

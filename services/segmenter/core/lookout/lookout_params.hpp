@@ -19,7 +19,7 @@ inline constexpr std::size_t kNumSums = kNumMerges + 2;
 inline constexpr std::array<EvidenceLayout, kNumSums> kEvidenceLayouts{{{"merge_1", kPairFeatureNames},
                                                                         {"merge_2", kPairFeatureNames},
                                                                         {"merge_3", kPairFeatureNames},
-                                                                        {"land", kPieceFeatureNames},
+                                                                        {"land", kLandFeatureNames},
                                                                         {"thing", kPieceFeatureNames}}};
 
 /// The sums that are compiled in, in the order of the layouts.

@@ -17,6 +17,8 @@ constexpr int kMostCrowdColumns = 16;
 constexpr double kCrowdBeams = 272.0;  // 17 columns of 16 rings
 constexpr std::int32_t kCrowdReturns = 2;
 constexpr double kLeastDepthM = 0.1;
+constexpr float kLeastRangeM = 0.5F;
+constexpr double kBendsPerMetre = 1024.0;
 
 // A column has entries of a few pieces; where it has very many, as in spray before the lens, the nearest of these say enough.
 constexpr std::size_t kMostInColumn = 24;
@@ -44,6 +46,8 @@ void PieceMeasurer::LookAround(const ScanGrid& grid, const PieceTable& pieces) {
       const bool is_few = pieces[entry.piece].num_returns <= kCrowdReturns;
       if (is_few && IsJudged(pieces, entry.piece)) few_.Add(entry);
       if (is_covered) ++Of(entry.piece, PieceFeature::kCovered);
+      const bool has_below = entry.min_ring > 0 && grid.NearestOfShot(entry.min_ring - 1, column) < entry.near_point.range_m;
+      if (has_below) ++Of(entry.piece, PieceFeature::kWaterBefore);
       is_covered = is_covered || !is_few;
       // Pieces behind are sorted: the next is the nearest.
       const bool has_backdrop = i + 1 < seen.size() && seen[i + 1].near_point.range_m - entry.far_point.range_m <= kBackdropM;
@@ -66,6 +70,32 @@ void PieceMeasurer::LookAround(const ScanGrid& grid, const PieceTable& pieces) {
   }
 }
 
+void PieceMeasurer::LookAlongRings(const ScanGrid& grid, const PieceTable& pieces) {
+  surfaces_.assign(static_cast<std::size_t>(pieces.size()), {});
+  const auto of_returns = pieces.of_returns();
+  const auto is_of = [&](std::int32_t index, std::int32_t piece) {
+    return index != ScanGrid::kNone && of_returns[static_cast<std::size_t>(index)] == piece;
+  };
+  for (std::size_t i = 0; i < of_returns.size(); ++i) {
+    const std::int32_t piece = of_returns[i];
+    if (piece < 0) continue;
+    const auto index = static_cast<std::int32_t>(i);
+    const int line = grid.LineOf(index);
+    const int column = grid.ColumnOf(index);
+    const int before = grid.Wrap(column - 1);
+    const int after = grid.Wrap(column + 1);
+    Surface& surface = surfaces_[static_cast<std::size_t>(piece)];
+    const bool has_before = is_of(grid.At(line, before), piece);
+    const bool has_after = is_of(grid.At(line, after), piece);
+    if (has_before && has_after) {
+      const double bend_m = double{grid.RangeAt(line, before)} - 2.0 * grid.RangeAt(line, column) + grid.RangeAt(line, after);
+      surface.bend += static_cast<std::int64_t>(std::abs(bend_m) * kBendsPerMetre + 0.5);
+      ++surface.num_bends;
+    }
+    if (!has_before && !has_after) ++surface.num_lone;
+  }
+}
+
 int PieceMeasurer::Few::NumAbout(const OutlineEntry& entry, int first_column, int end_column) const {
   const std::size_t begin = begin_of_column[static_cast<std::size_t>(first_column)];
   const std::size_t end = begin_of_column[static_cast<std::size_t>(end_column)];
@@ -81,6 +111,7 @@ int PieceMeasurer::Few::NumAbout(const OutlineEntry& entry, int first_column, in
 std::span<const PieceFeatures> PieceMeasurer::Measure(const ScanGrid& grid, const PieceTable& pieces, double lidar_above_water_m) {
   features_.assign(static_cast<std::size_t>(pieces.size()), {});
   LookAround(grid, pieces);
+  LookAlongRings(grid, pieces);
   const double crowd_scale = kCrowdBeams / ((2.0 * CrowdColumns(grid) + 1.0) * grid.num_rings());
   for (std::int32_t piece = 0; piece < pieces.size(); ++piece) {
     const PieceFacts& facts = pieces[piece];
@@ -108,6 +139,12 @@ std::span<const PieceFeatures> PieceMeasurer::Measure(const ScanGrid& grid, cons
     set(PieceFeature::kBackdrop, Of(piece, PieceFeature::kBackdrop) / num_columns);
     set(PieceFeature::kCovered, Of(piece, PieceFeature::kCovered) / num_columns);
     set(PieceFeature::kCrowd, Of(piece, PieceFeature::kCrowd) / num_columns * crowd_scale);
+    const Surface& surface = surfaces_[static_cast<std::size_t>(piece)];
+    set(PieceFeature::kRough, surface.num_bends == 0 ? -1.0 : static_cast<double>(surface.bend) / kBendsPerMetre / surface.num_bends);
+    set(PieceFeature::kLone, surface.num_lone / static_cast<double>(facts.num_returns));
+    set(PieceFeature::kWaterBefore, Of(piece, PieceFeature::kWaterBefore) / num_columns);
+    set(PieceFeature::kBottomRings,
+        (facts.min_height_m + lidar_above_water_m) / (grid.RingStepOf(facts.min_ring) * std::max(facts.min_range_m, kLeastRangeM)));
   }
   return features_;
 }

@@ -33,12 +33,20 @@ enum class PieceFeature : std::uint8_t {
   kCovered,   // share of its columns in which something of more than two returns stands nearer
   kCrowd,     // pieces of one or two returns within 3 m of range and 1.6 deg of one of its columns: as many as 272 beams there would meet, as of a
               // VLP-16
+  // Of the sum of a thing alone.
+  kRough,        // m, mean of |second difference| of the ranges of three returns beside each other in a ring; -1 where it has no such three
+  kLone,         // share of its returns without one of it beside them in their ring
+  kWaterBefore,  // share of its columns in which the beam below its lowest return met something nearer
+  kBottomRings,  // bottom over what one ring rises at its range: below 1 of what floats, as the ring below would meet the water
   kNum
 };
 inline constexpr std::size_t kNumPieceFeatures = static_cast<std::size_t>(PieceFeature::kNum);
 inline constexpr std::array<std::string_view, kNumPieceFeatures> kPieceFeatureNames{
-    "range_m",  "returns",  "deg2",  "rise_deg", "width_m",  "depth_m", "length_m", "off_m",   "top_m",
-    "bottom_m", "middle_m", "slope", "fill",     "box_fill", "gaps",    "backdrop", "covered", "crowd"};
+    "range_m", "returns", "deg2",     "rise_deg", "width_m",  "depth_m", "length_m", "off_m",   "top_m", "bottom_m",     "middle_m",
+    "slope",   "fill",    "box_fill", "gaps",     "backdrop", "covered", "crowd",    "rough_m", "lone",  "water_before", "bottom_rings"};
+/// The sum of land asks for these first ones alone.
+inline constexpr std::span<const std::string_view> kLandFeatureNames =
+    std::span(kPieceFeatureNames).first<static_cast<std::size_t>(PieceFeature::kRough)>();
 using PieceFeatures = std::array<float, kNumPieceFeatures>;
 
 /// No water gives so many groups; in heavy rain there are 4000. Where a scan has more, those of one or two returns are clutter, whatever is measured.
@@ -54,6 +62,7 @@ class PieceMeasurer {
  private:
   float& Of(std::int32_t piece, PieceFeature feature) { return features_[static_cast<std::size_t>(piece)][static_cast<std::size_t>(feature)]; }
   void LookAround(const ScanGrid& grid, const PieceTable& pieces);
+  void LookAlongRings(const ScanGrid& grid, const PieceTable& pieces);
 
   // Pieces of few returns, column by column.
   struct Few {
@@ -77,7 +86,15 @@ class PieceMeasurer {
     int NumAbout(const OutlineEntry& entry, int first_column, int end_column) const;
   };
 
+  // Whole numbers: their sums do not depend on the order of the returns.
+  struct Surface {
+    std::int64_t bend = 0;  // sum of |second difference| of the range, 2^-10 m
+    std::int32_t num_bends = 0;
+    std::int32_t num_lone = 0;
+  };
+
   std::vector<PieceFeatures> features_;
+  std::vector<Surface> surfaces_;  // [pieces]
   Few few_;
 };
 

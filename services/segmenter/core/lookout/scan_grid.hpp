@@ -85,6 +85,11 @@ class ScanGrid {
     const float other_m = RangeAt(ring * num_layers_ + 1, column);
     return std::isinf(one_m) ? other_m : std::isinf(other_m) ? one_m : std::max(one_m, other_m);
   }
+  /// The nearest that a shot met; infinite where there is none.
+  float NearestOfShot(int ring, int column) const {
+    if (num_layers_ == 1) return RangeAt(ring, column);
+    return std::min(RangeAt(ring * num_layers_, column), RangeAt(ring * num_layers_ + 1, column));
+  }
   /// The first column from this one on, up to the last, in which a line has a return; num_columns() where there is none.
   int NextOccupied(int line, int column) const;
   /// [columns]
