@@ -31,7 +31,7 @@ std::string_view PoseText(std::int32_t pose_status) {
 
 }  // namespace
 
-Service::Service(bus::Bus& bus, const Params& params) 
+Service::Service(bus::Bus& bus, const Params& params)
     : bus_(bus), georeferencer_(params.placement, params.pose_timeout, params.T_vessel_lidar_2), datum_(params.datum) {
   if (params.T_vessel_lidar_2) {
     second_watch_.emplace(bus::kSegments2.name);

@@ -1,4 +1,5 @@
-// The lidar process: datagrams of a lidar, captures of them, or LIDAR_PACKETS in; LIDAR_PACKETS, LIDAR_BEAMS, LIDAR_NMEA, LIDAR_CLOCK, LIDAR_SCAN out.
+// The lidar process: datagrams of a lidar, captures of them, or LIDAR_PACKETS in; LIDAR_PACKETS, LIDAR_BEAMS, LIDAR_NMEA, LIDAR_CLOCK, LIDAR_SCAN
+// out.
 #include <chrono>
 #include <filesystem>
 #include <spdlog/spdlog.h>

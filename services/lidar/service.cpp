@@ -302,7 +302,8 @@ std::string Service::OwnComplaint() const {
   if (params_.input == Input::kOutside && silent_since_ && now_ - *silent_since_ >= kSilence) {
     const auto seconds = std::to_string(std::chrono::floor<std::chrono::seconds>(now_ - *silent_since_).count());
     std::string refusal = reading_->decoder->last_refusal();
-    if (refusal.empty() && !reading_->bundler.foreign_sensor().empty()) refusal = "a packet of another sensor: " + std::string(reading_->bundler.foreign_sensor());
+    if (refusal.empty() && !reading_->bundler.foreign_sensor().empty())
+      refusal = "a packet of another sensor: " + std::string(reading_->bundler.foreign_sensor());
     if (!refusal.empty()) return "no usable lidar packets for " + seconds + " s; the last was refused: " + refusal;
     return "no lidar packets for " + seconds + " s";
   }

@@ -83,11 +83,11 @@ class Service {
   bus::Bus& bus_;
   Params params_;
   std::optional<Reading> reading_;  // nullopt: the beams are not known yet
-  std::int64_t raw_seq_ = 0;  // of the bundle that is being consumed
+  std::int64_t raw_seq_ = 0;        // of the bundle that is being consumed
   std::int64_t sentence_seq_ = 0;
   std::int64_t num_refused_messages_ = 0;
   std::int64_t num_beams_refused_ = 0;
-  std::int64_t num_beams_of_log_ = 0;  // tables of a log that are not that of the config
+  std::int64_t num_beams_of_log_ = 0;      // tables of a log that are not that of the config
   std::int64_t num_waited_for_beams_ = 0;  // packets that came before the beams were known
   std::int64_t beams_seq_ = 0;
   std::optional<Utime> beams_sent_;    // packets of that time followed

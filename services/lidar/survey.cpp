@@ -21,7 +21,7 @@ using std::chrono::microseconds;
 constexpr std::size_t kMaxHeard = 64;
 constexpr std::size_t kSecondPacketBytes = 512;  // position of a Velodyne, GPS of a Hesai
 
-constexpr std::array kHesaiOfTable{OtherModel::kXt16,  OtherModel::kXt32,      OtherModel::kXt32m,    OtherModel::kQt64,
+constexpr std::array kHesaiOfTable{OtherModel::kXt16,  OtherModel::kXt32,      OtherModel::kXt32m,   OtherModel::kQt64,
                                    OtherModel::kQt128, OtherModel::kPandar40p, OtherModel::kPandar64};
 static_assert(kHesaiOfTable.size() == kNumHesaiModels);
 
@@ -65,7 +65,8 @@ void Survey::Identify(Bytes payload, Heard& heard) const {
   const auto velodyne = VelodyneModelOf(payload);
   if (verdict == Verdict::kValid || verdict == Verdict::kUndecided) {
     speaker.is_of_vlp16_family = verdict == Verdict::kValid;
-    speaker.name = verdict == Verdict::kUndecided ? "Velodyne VLP-16 or HDL-32E" : std::string(vlp16::NameOfProduct(payload[vlp16::format::kProductOffset]));
+    speaker.name =
+        verdict == Verdict::kUndecided ? "Velodyne VLP-16 or HDL-32E" : std::string(vlp16::NameOfProduct(payload[vlp16::format::kProductOffset]));
     if (speaker.name.empty() || payload[vlp16::format::kProductOffset] == vlp16::format::kProductHdl32e) {
       if (verdict == Verdict::kValid) speaker.name = "Velodyne VLP-16";
     }

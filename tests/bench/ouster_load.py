@@ -147,7 +147,7 @@ def main():
     info = subprocess.run([f"{build}/bin/lookout-log", "info", *[os.path.join("logs", name) for name in log]], capture_output=True, text=True)
     print("\n".join(line for line in info.stdout.splitlines() if re.search("LIDAR|SEGMENTS|missing|lost|HEALTH", line)))
     clocks = subprocess.run(
-        [f"{build}/bin/lookout-export", "--in", os.path.join("logs", log[0]), "--table", "lidar_clock"], capture_output=True, text=True
+        [f"{build}/bin/lookout-export", "--in", os.path.join("logs", log[0]), "--table", "clock"], capture_output=True, text=True
     ).stdout.splitlines()
     if len(clocks) > 1:
         row = dict(zip(clocks[0].split(","), clocks[-1].split(",")))

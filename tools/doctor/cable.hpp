@@ -11,8 +11,8 @@
 
 namespace lookout::doctor {
 
-/// Listens beside the ports of the config: with CAP_NET_RAW on each interface but loopback, also to what is sent to other addresses; without it on the
-/// ports to which lidars send as delivered, those that are free.
+/// Listens beside the ports of the config: with CAP_NET_RAW on each interface but loopback, also to what is sent to other addresses; without it on
+/// the ports to which lidars send as delivered, those that are free.
 class Cable {
  public:
   /// @param ports_in_use  the ports of lidar.txtpb: somebody else hears them

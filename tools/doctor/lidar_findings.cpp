@@ -171,10 +171,12 @@ Finding CheckSensorClock(const lidar_clock_t& clock) {
 Finding CheckWholeClock(const Observations& seen, std::chrono::microseconds host_minus_stamp, Utime stamp, const std::string& used) {
   const std::string whose = seen.lidar.is_capture ? "the capture's" : "this computer's";
   const auto difference = lidar::ClockDifferenceText(host_minus_stamp, stamp, whose);
-  if (difference.empty()) return Ok(kClockSubject, "the lidar's clock agrees with " + whose + " to " + Fixed(1e3 * ToSeconds(host_minus_stamp), 1) + " ms" + used);
-  return Warning(kClockSubject, "the lidar's clock is not synchronised to UTC: " + difference + used,
-                 "nothing need be done where time_source is TIME_AUTO: this computer's clock stamps the scans, to some ms; else PTP with a master that "
-                 "sends UTC, or PPS with GPRMC");
+  if (difference.empty())
+    return Ok(kClockSubject, "the lidar's clock agrees with " + whose + " to " + Fixed(1e3 * ToSeconds(host_minus_stamp), 1) + " ms" + used);
+  return Warning(
+      kClockSubject, "the lidar's clock is not synchronised to UTC: " + difference + used,
+      "nothing need be done where time_source is TIME_AUTO: this computer's clock stamps the scans, to some ms; else PTP with a master that "
+      "sends UTC, or PPS with GPRMC");
 }
 
 std::optional<Finding> CheckWholeClock(const Observations& seen) {
@@ -186,7 +188,8 @@ std::optional<Finding> CheckWholeClock(const Observations& seen) {
     return CheckWholeClock(seen, apart, stamp, is_sensors ? "; scans have the sensor's time" : "; scans have this computer's time");
   }
   for (const auto& speaker : seen.lidar.speakers) {
-    if (speaker.host_minus_stamp && speaker.data_port == config.data_port) return CheckWholeClock(seen, *speaker.host_minus_stamp, *speaker.stamp, "");
+    if (speaker.host_minus_stamp && speaker.data_port == config.data_port)
+      return CheckWholeClock(seen, *speaker.host_minus_stamp, *speaker.stamp, "");
   }
   return std::nullopt;
 }

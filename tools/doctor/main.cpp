@@ -40,8 +40,8 @@ Options ParseOptions(int argc, char** argv) {
   Options options;
   CLI::App app("Checks whether a boat is ready to cast off: config, bus, lidar, clocks, GNSS, heading, mounting, disk, processes.", "lookout-doctor");
   auto* const config = app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files; not needed with --in")
-      ->check(CLI::ExistingDirectory)
-      ->check(lookout::config::BoatFolderFault);
+                           ->check(CLI::ExistingDirectory)
+                           ->check(lookout::config::BoatFolderFault);
   app.add_option("--seconds", options.seconds, "listen for so long")->check(CLI::Range(kMinSeconds, kMaxSeconds))->capture_default_str();
   app.add_flag("--check", options.check_only, "check the config of every process, print the values in force or every fault, exit");
   app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");

@@ -43,7 +43,8 @@ std::string SpeakerText(const lidar::Speaker& speaker) {
   std::string text = speaker.name;
   if (!speaker.layouts.empty()) text += " (" + LayoutsText(speaker) + ")";
   if (!speaker.source_address.empty()) text += " at " + speaker.source_address;
-  text += " sends to " + (speaker.destination_address.empty() ? "" : speaker.destination_address + ", ") + "port " + std::to_string(speaker.data_port);
+  text +=
+      " sends to " + (speaker.destination_address.empty() ? "" : speaker.destination_address + ", ") + "port " + std::to_string(speaker.data_port);
   return text + ": " + Count(speaker.num_packets, "packet") + " of " + std::to_string(speaker.size_bytes) + " bytes";
 }
 
@@ -141,9 +142,9 @@ Findings CheckSpeakers(const Observations& seen) {
     if (const auto destination = CheckDestination(speaker, seen)) findings.push_back(*destination);
   }
   if (seen.lidar.num_fragments_lost > 0) {
-    findings.push_back(Warning(kCableSubject,
-                               Count(seen.lidar.num_fragments_lost, "datagram") + " lost because IP fragments of them did not come: each is a lidar packet",
-                               "cable and switch; jumbo frames on both ends; sysctl net.ipv4.ipfrag_high_thresh; a profile with smaller packets"));
+    findings.push_back(Warning(
+        kCableSubject, Count(seen.lidar.num_fragments_lost, "datagram") + " lost because IP fragments of them did not come: each is a lidar packet",
+        "cable and switch; jumbo frames on both ends; sysctl net.ipv4.ipfrag_high_thresh; a profile with smaller packets"));
   }
   return findings;
 }
@@ -163,7 +164,8 @@ Findings CheckWindow(const Observations& seen) {
   if (boat.T_vessel_lidar.linear()(2, 2) < 0.0) std::swap(from_deg, to_deg);
   text += fmt::format(", which is {:.0f} to {:.0f} deg clockwise from the bow", from_deg, to_deg);
   const auto num_own = std::ranges::count_if(azimuths, [](const auto& azimuth) { return 2 * azimuth.num_own > azimuth.num_shots; });
-  const char* const cure = "the azimuth window on the lidar's own page (Ouster: azimuth_window; Velodyne, Hesai: field of view); away from the mast, and ahead";
+  const char* const cure =
+      "the azimuth window on the lidar's own page (Ouster: azimuth_window; Velodyne, Hesai: field of view); away from the mast, and ahead";
   constexpr int kMaxOwnQuarter = 4;
   if (kMaxOwnQuarter * num_own > size_deg) {
     return {Warning(kWindowSubject, text + fmt::format("; in {} deg of it most shots hit own_vessel: it faces the mast or the hull", num_own), cure)};

@@ -101,9 +101,8 @@ void AddUnmet(const Request& request, const ChannelSet& present, const ServiceRo
   std::vector<const bus::Channel*> unmet;
   for (const auto& service : services) {
     if (!plan.Runs(service.name)) continue;
-    std::ranges::copy_if(service.inputs, std::back_inserter(unmet), [&](const bus::Channel* input) {
-      return IsFromSeveral(input) || (IsOfSecondLidar(input) && !plan.Publishes(*input));
-    });
+    std::ranges::copy_if(service.inputs, std::back_inserter(unmet),
+                         [&](const bus::Channel* input) { return IsFromSeveral(input) || (IsOfSecondLidar(input) && !plan.Publishes(*input)); });
     if (ReadsRaw(service, request, present)) {
       unmet.push_back(bus::RawOutput(service));
       for (const auto& channel : bus::kChannels) {

@@ -56,10 +56,10 @@ class Georeferencer {
     SegmentPart part;
     std::optional<Utime> arrival;  // host time, where there is one
   };
-  static constexpr auto kCountNames = std::to_array<std::string_view>(
-      {"parts_released", "parts_timed_out", "parts_overflowed", "parts_flushed", "parts_waiting", "poses_taken", "poses_duplicate", "pose_restarts",
-       "obstacles_ok", "obstacles_vessel_frame_only", "obstacles_pose_timeout", "footprints_thinned", "waterlines_thinned", "obstacles_of_second",
-       "segments_of_second_dropped"});
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"parts_released", "parts_timed_out", "parts_overflowed", "parts_flushed", "parts_waiting", "poses_taken",
+                                       "poses_duplicate", "pose_restarts", "obstacles_ok", "obstacles_vessel_frame_only", "obstacles_pose_timeout",
+                                       "footprints_thinned", "waterlines_thinned", "obstacles_of_second", "segments_of_second_dropped"});
 
   bool IsReady(const SegmentPart& part) const;
   void ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& released);

@@ -31,7 +31,8 @@ class SecondLidar {
   /// @param newest_pose  time of the newest POSE
   bool Holds(Utime end_time, Utime newest_pose) const;
 
-  /// @return the segments that were seen during a scan of the first, by their own times; all earlier ones are forgotten. Those seen between it and the
+  /// @return the segments that were seen during a scan of the first, by their own times; all earlier ones are forgotten. Those seen between it and
+  /// the
   ///         scan before have its first instant as their time
   std::vector<Segment> Take(Utime time, Utime end_time);
 

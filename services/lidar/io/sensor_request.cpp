@@ -32,7 +32,8 @@ class Exchange {
     // Counts from here on for every step: it is not set again.
     stream_.expires_after(time_limit);
     Do([&](const auto& handler) {
-      stream_.async_connect(asio::ip::tcp::endpoint(address, static_cast<std::uint16_t>(sensor_.port)), [handler](error_code result) { handler(result); });
+      stream_.async_connect(asio::ip::tcp::endpoint(address, static_cast<std::uint16_t>(sensor_.port)),
+                            [handler](error_code result) { handler(result); });
     });
   }
 

@@ -1,4 +1,6 @@
 // Captures under the doctor: which lidars speak, the lines for lidar.txtpb, and what is wrong.
+#include "tools/doctor/cable.hpp"
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -9,7 +11,6 @@
 #include "tests/unit/doctor/healthy.hpp"
 #include "tests/unit/lidar_models/hesai_packet.hpp"
 #include "tests/unit/lidar_models/ouster_packet_maker.hpp"
-#include "tools/doctor/cable.hpp"
 
 namespace lookout::doctor::test {
 namespace {
@@ -29,7 +30,8 @@ class CaptureFile {
   }
   void Add(std::uint64_t time_ns, const std::array<std::uint8_t, 4>& to, int port, const Payload& payload) {
     const auto size = static_cast<std::uint32_t>(14 + 20 + 8 + payload.size());
-    for (const std::uint32_t word : {static_cast<std::uint32_t>(time_ns / kSecond), static_cast<std::uint32_t>(time_ns % kSecond / 1000), size, size}) {
+    for (const std::uint32_t word :
+         {static_cast<std::uint32_t>(time_ns / kSecond), static_cast<std::uint32_t>(time_ns % kSecond / 1000), size, size}) {
       Put(word, 4);
     }
     std::vector<std::uint8_t> head(42);
@@ -139,8 +141,9 @@ TEST_F(DoctorCapture, SaysThatTheMetadataAreOfAnotherProfile) {
   MakeOuster(OusterProfile::kLowBandwidth, 32);
   WriteMetadata(OusterProfile::kSingle, 32);
   const auto findings = Ask(kOusterLines);
-  EXPECT_SAYS(About(findings, "lidar"), kFault,
-              "the metadata file says RNG19_RFL8_SIG16_NIR16 with 32 rings, 16 columns a packet, but the Ouster OS1-32 sends RNG15_RFL8_NIR8 with 32");
+  EXPECT_SAYS(
+      About(findings, "lidar"), kFault,
+      "the metadata file says RNG19_RFL8_SIG16_NIR16 with 32 rings, 16 columns a packet, but the Ouster OS1-32 sends RNG15_RFL8_NIR8 with 32");
 }
 
 TEST_F(DoctorCapture, SaysThatTheClockIsInTai) {
@@ -216,7 +219,7 @@ TEST(DoctorRecordings, AreTold) {
     ASSERT_EQ(std::system(("xz -dc '" + (folder / (name + ".pcap.xz")).string() + "' >'" + unpacked.string() + "'").c_str()), 0);
     Observations seen;
     ReadCaptures({unpacked}, seen);
-    EXPECT_SAYS(About(CheckCaptures(seen), "lidar"), kWarning, words) << name;
+    EXPECT_SAYS(About(CheckCaptures(seen), "lidar"), kWarning, words);
     EXPECT_EQ(seen.lidar.num_fragments_lost, 0) << name;
   }
 }

@@ -19,7 +19,7 @@ constexpr std::int64_t kScanUs = 100'000;
 constexpr std::int64_t kApartUs = 30'000;  // the second begins its scans so much later
 
 // The second stands 5 m aft and looks aft.
-Georeferencer Make() {
+Georeferencer MakeTwo() {
   Eigen::Isometry3d T_vessel_lidar_2 = Eigen::Isometry3d::Identity();
   T_vessel_lidar_2.linear() = Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
   T_vessel_lidar_2.translation() = Eigen::Vector3d(-5.0, 0.0, 0.0);
@@ -41,7 +41,7 @@ struct Feed {
 };
 
 // All of 40 scans, in the order of their ends; what went out. `ahead_us`: POSE comes so much later than it is measured.
-std::vector<ObstaclePart> Run(Georeferencer& georeferencer, const Feed& feed, std::int64_t pose_delay_us = 0, std::int64_t second_delay_us = 0) {
+std::vector<ObstaclePart> FeedBoth(Georeferencer& georeferencer, const Feed& feed, std::int64_t pose_delay_us = 0, std::int64_t second_delay_us = 0) {
   std::vector<ObstaclePart> all;
   const auto keep = [&all](std::vector<ObstaclePart> parts) {
     for (auto& part : parts) all.push_back(std::move(part));
@@ -68,8 +68,8 @@ std::vector<ObstaclePart> OfScan(const std::vector<ObstaclePart>& all, int numbe
 }
 
 TEST(SecondLidar, AddsWhatItSawDuringAScanToThatScan) {
-  auto georeferencer = Make();
-  const auto all = Run(georeferencer, {});
+  auto georeferencer = MakeTwo();
+  const auto all = FeedBoth(georeferencer, {});
   const auto parts = OfScan(all, 20);
   ASSERT_EQ(parts.size(), 2U);
   EXPECT_EQ(parts[0].head.num_parts, 2);
@@ -97,10 +97,10 @@ TEST(SecondLidar, AddsWhatItSawDuringAScanToThatScan) {
 }
 
 TEST(SecondLidar, ChangesNothingWhereItIsSilent) {
-  auto georeferencer = Make();
+  auto georeferencer = MakeTwo();
   Georeferencer alone(PlacementParams{}, std::chrono::milliseconds(500));
-  const auto with = Run(georeferencer, {.has_second = false});
-  const auto without = Run(alone, {.has_second = false});
+  const auto with = FeedBoth(georeferencer, {.has_second = false});
+  const auto without = FeedBoth(alone, {.has_second = false});
   ASSERT_EQ(with.size(), without.size());
   for (std::size_t i = 0; i < with.size(); ++i) EXPECT_EQ(with[i].head.num_parts, without[i].head.num_parts);
 }
@@ -109,11 +109,11 @@ TEST(SecondLidar, ChangesNothingWhereItIsSilent) {
 TEST(SecondLidar, GivesTheSameHoweverTheChannelsInterleave) {
   for (const int first_without_second : {1000, 25}) {
     const Feed feed{.has_second = true, .first_without_second = first_without_second};
-    auto one = Make();
-    const auto expected = Run(one, feed);
+    auto one = MakeTwo();
+    const auto expected = FeedBoth(one, feed);
     for (const auto& [pose_delay_us, second_delay_us] : {std::pair<std::int64_t, std::int64_t>{200'000, 0}, {0, 200'000}, {400'000, 100'000}}) {
-      auto other = Make();
-      const auto all = Run(other, feed, pose_delay_us, second_delay_us);
+      auto other = MakeTwo();
+      const auto all = FeedBoth(other, feed, pose_delay_us, second_delay_us);
       ASSERT_EQ(all.size(), expected.size()) << pose_delay_us << " " << second_delay_us << " " << first_without_second;
       for (std::size_t i = 0; i < all.size(); ++i) {
         EXPECT_EQ(all[i].head.seq, expected[i].head.seq);
@@ -130,7 +130,7 @@ TEST(SecondLidar, GivesTheSameHoweverTheChannelsInterleave) {
 
 // One that dies costs half a second for two seconds, and then nothing.
 TEST(SecondLidar, ThatDiesHoldsNothingUp) {
-  auto georeferencer = Make();
+  auto georeferencer = MakeTwo();
   std::vector<ObstaclePart> all;
   for (int number = 0; number < 20; ++number) {
     georeferencer.AddSegments(FirstScan(number));
@@ -154,7 +154,7 @@ TEST(SecondLidar, ThatDiesHoldsNothingUp) {
 }
 
 TEST(SecondLidar, OfManySegmentsAddsSeveralPartsWithRisingNumbers) {
-  auto georeferencer = Make();
+  auto georeferencer = MakeTwo();
   for (int number = 0; number < 30; ++number) {
     std::vector<Segment> segments;
     for (int i = 0; i < 50; ++i) {

@@ -177,10 +177,9 @@ TEST_F(Beams, OfALogThatAreNoneAreRefused) {
   service.Finish(TimeOf(6));
   support::HandleAll(live.bus);
   const auto scans = Scans(live);
-  for (const auto& spoil : std::vector<std::function<void(lidar_beams_t&)>>{[](auto& beams) { beams.text = "{}"; },
-                                                                            [](auto& beams) { beams.text.assign(100'000, ' '); },
-                                                                            [](auto& beams) { beams.text.clear(); },
-                                                                            [](auto& beams) { beams.model = "MODEL_XT32"; }}) {
+  for (const auto& spoil :
+       std::vector<std::function<void(lidar_beams_t&)>>{[](auto& beams) { beams.text = "{}"; }, [](auto& beams) { beams.text.assign(100'000, ' '); },
+                                                        [](auto& beams) { beams.text.clear(); }, [](auto& beams) { beams.model = "MODEL_XT32"; }}) {
     support::KeepingBus spoilt;
     for (auto [channel, bytes] : live.sent) {
       if (channel == bus::kLidarBeams.name) {

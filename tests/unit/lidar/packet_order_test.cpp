@@ -150,12 +150,12 @@ TEST(PacketOrder, TakesPacketsWithoutAGoodColumnAsSent) {
 
 // One without a good column that overtook its neighbour was forgotten, and then counted as lost.
 TEST(PacketOrder, TakesPacketsWithoutAGoodColumnThatComeOutOfOrder) {
-  for (const auto& [arrivals, empty, num_lost] : std::vector<std::tuple<std::vector<int>, std::vector<int>, int>>{
-           {{0, 1, 3, 2, 4, 5, 6}, {3}, 0},
-           {{0, 1, 4, 3, 2, 5, 6}, {3, 4}, 0},
-           {{0, 1, 3, 4, 5, 2, 6, 7}, {3}, 0},
-           {{0, 1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13}, {3}, 1},
-           {{0, 1, 3, 2, 2, 3, 4, 5}, {3}, 0}}) {
+  for (const auto& [arrivals, empty, num_lost] :
+       std::vector<std::tuple<std::vector<int>, std::vector<int>, int>>{{{0, 1, 3, 2, 4, 5, 6}, {3}, 0},
+                                                                        {{0, 1, 4, 3, 2, 5, 6}, {3, 4}, 0},
+                                                                        {{0, 1, 3, 4, 5, 2, 6, 7}, {3}, 0},
+                                                                        {{0, 1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13}, {3}, 1},
+                                                                        {{0, 1, 3, 2, 2, 3, 4, 5}, {3}, 0}}) {
     ColumnSensor sensor;
     sensor.has_numbers = true;
     std::vector<std::chrono::nanoseconds> times;

@@ -1,4 +1,6 @@
 // A sensor is asked for its beams: fake sensors on loopback that answer well, badly, slowly, in part, or not at all.
+#include "services/lidar/io/sensor_request.hpp"
+
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -13,7 +15,6 @@
 #include <thread>
 
 #include "services/lidar/io/beam_fetcher.hpp"
-#include "services/lidar/io/sensor_request.hpp"
 
 namespace lookout::lidar {
 namespace {
@@ -98,7 +99,8 @@ TEST(SensorRequest, GetsAnAnswerInChunksAndOneThatEndsWithTheConnection) {
 }
 
 TEST(SensorRequest, RefusesBadAnswersOfAnOuster) {
-  EXPECT_NE(FaultOf(&RequestOusterMetadata, Says(Http("no", "404 Not Found"))).find("HTTP status 404 for /api/v1/sensor/metadata"), std::string::npos);
+  EXPECT_NE(FaultOf(&RequestOusterMetadata, Says(Http("no", "404 Not Found"))).find("HTTP status 404 for /api/v1/sensor/metadata"),
+            std::string::npos);
   EXPECT_NE(FaultOf(&RequestOusterMetadata, Says(Http(std::string(70'000, ' ')))).find("body limit"), std::string::npos);
   EXPECT_NE(FaultOf(&RequestOusterMetadata, Says("SSH-2.0-OpenSSH_9.2\r\n\r\n\r\n")), "");
   EXPECT_NE(FaultOf(&RequestOusterMetadata, Says(Http("{\"a\": 1}").substr(0, 75))), "") << "cut off";
@@ -130,7 +132,8 @@ TEST(SensorRequest, EndsAtTheTimeLimit) {
   };
   for (const auto request : {Request{&RequestOusterMetadata}, Request{&RequestHesaiAngles}}) {
     const auto start = std::chrono::steady_clock::now();
-    const auto fault = FaultOf(request, [](int) { std::this_thread::sleep_for(milliseconds(600)); }, milliseconds(200));
+    const auto fault = FaultOf(
+        request, [](int) { std::this_thread::sleep_for(milliseconds(600)); }, milliseconds(200));
     EXPECT_NE(fault.find("no whole answer in time"), std::string::npos) << fault;
     EXPECT_LT(std::chrono::steady_clock::now() - start, milliseconds(3000));
   }

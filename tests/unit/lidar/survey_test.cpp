@@ -1,10 +1,11 @@
 // Which lidar sends a datagram, told without a config.
+#include "services/lidar/survey.hpp"
+
 #include <chrono>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
-#include "services/lidar/survey.hpp"
 #include "tests/unit/lidar/packet_maker.hpp"
 #include "tests/unit/lidar_models/hesai_packet.hpp"
 #include "tests/unit/lidar_models/ouster_packet_maker.hpp"
@@ -25,9 +26,10 @@ std::vector<Speaker> SpeakersOf(const std::vector<std::uint8_t>& payload, int po
 }
 
 TEST(Survey, TellsEachHesai) {
-  const std::vector<std::pair<HesaiModel, std::string>> models{
-      {HesaiModel::kXt16, "MODEL_XT16"},   {HesaiModel::kXt32, "MODEL_XT32"},           {HesaiModel::kXt32m, "MODEL_XT32M"},    {HesaiModel::kQt64, "MODEL_QT64"},
-      {HesaiModel::kQt128, "MODEL_QT128"}, {HesaiModel::kPandar40p, "MODEL_PANDAR40P"}, {HesaiModel::kPandar64, "MODEL_PANDAR64"}};
+  const std::vector<std::pair<HesaiModel, std::string>> models{{HesaiModel::kXt16, "MODEL_XT16"},        {HesaiModel::kXt32, "MODEL_XT32"},
+                                                               {HesaiModel::kXt32m, "MODEL_XT32M"},      {HesaiModel::kQt64, "MODEL_QT64"},
+                                                               {HesaiModel::kQt128, "MODEL_QT128"},      {HesaiModel::kPandar40p, "MODEL_PANDAR40P"},
+                                                               {HesaiModel::kPandar64, "MODEL_PANDAR64"}};
   for (const auto& [model, word] : models) {
     const auto speakers = SpeakersOf(MadeHesaiPacket(model, 0x37).bytes, 2368);
     ASSERT_EQ(speakers.size(), 1U) << word;
@@ -56,7 +58,8 @@ TEST(Survey, TellsTheVelodynes) {
 
 TEST(Survey, TellsEachProfileOfAnOusterAndNamesBothWhereSizesAreEqual) {
   using namespace ouster_maker;
-  for (const auto profile : {OusterProfile::kLegacy, OusterProfile::kSingle, OusterProfile::kDual, OusterProfile::kLowBandwidth, OusterProfile::kFusaDual}) {
+  for (const auto profile :
+       {OusterProfile::kLegacy, OusterProfile::kSingle, OusterProfile::kDual, OusterProfile::kLowBandwidth, OusterProfile::kFusaDual}) {
     for (const int rings : {16, 32, 64, 128}) {
       PacketText text;
       text.stamp_ns = 1'795'780'838'000'000'000;  // 37 s ahead

@@ -104,7 +104,8 @@ struct OusterLayout {
   friend bool operator==(const OusterLayout&, const OusterLayout&) = default;
 };
 
-/// @return every layout that has the size of this payload and columns that follow one another; empty: it is no data packet of an Ouster. Layouts of one
+/// @return every layout that has the size of this payload and columns that follow one another; empty: it is no data packet of an Ouster. Layouts of
+/// one
 ///         size cannot be told apart by a packet
 std::vector<OusterLayout> OusterLayoutsOf(Bytes payload);
 
