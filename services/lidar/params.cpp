@@ -5,6 +5,7 @@
 #include <functional>
 #include <sstream>
 
+#include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
 #include "common/io/network.hpp"
@@ -144,6 +145,20 @@ Sources ToSources(const std::filesystem::path& config_folder, const config::Lida
 
 }  // namespace
 
+namespace {
+
+// Faults of boat.txtpb are told by who needs it.
+std::optional<Eigen::Matrix3d> MountingOf(const std::filesystem::path& config_folder, int number) {
+  config::FaultList untold;
+  const auto boat = untold.Take([&] { return config::LoadBoat(config_folder); });
+  if (!boat) return std::nullopt;
+  if (number == 1) return boat->T_vessel_lidar.linear();
+  if (!boat->lidar_2) return std::nullopt;
+  return TransformVesselSensor(*boat->lidar_2).linear();
+}
+
+}  // namespace
+
 std::string BeamFault(OtherModel model, const std::string& text) {
   if (text.empty()) return "is empty";
   if (text.size() > kMaxBeamTextBytes) return "is larger than 64 KiB: no such file of a maker is";
@@ -187,6 +202,7 @@ Params LoadParams(const std::filesystem::path& config_folder, int number, std::v
   params.decoder.cut_azimuth_rad = DegToRad(message.cut_azimuth_deg());
   params.decoder.use_vertical_origin_offsets = message.use_vertical_origin_offsets();
   params.sources = ToSources(config_folder, message);
+  params.R_vessel_lidar = MountingOf(config_folder, number);
   return params;
 }
 

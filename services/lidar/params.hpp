@@ -1,6 +1,7 @@
 // Config of the lidar process (lidar.txtpb) as checked values.
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -49,6 +50,7 @@ struct Params {
   vlp16::DecoderParams decoder;     // of other models its time and cut alone
   std::optional<OtherLidar> other;  // nullopt: of the VLP-16 family
   Sources sources;
+  std::optional<Eigen::Matrix3d> R_vessel_lidar;  // its mounting, where boat.txtpb has it: for the IMU in the lidar
 };
 
 /// The word of the schema for `model` in lidar.txtpb. @param other  nullopt: of the VLP-16 family

@@ -1,11 +1,17 @@
 // Beams of a lidar on the bus: LIDAR_BEAMS are in the log, and a replay uses them.
+#include <bit>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <gtest/gtest.h>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "common/core/bytes.hpp"
 #include "lookout/lidar_beams_t.hpp"
+#include "lookout/lidar_nmea_t.hpp"
+#include "lookout/lidar_scan_t.hpp"
 #include "services/lidar/params.hpp"
 #include "services/lidar/service.hpp"
 #include "tests/support/counters.hpp"
@@ -30,7 +36,8 @@ std::string MetadataOf(double highest_deg) {
   }
   return R"({"prod_line": "OS-1-16", "lidar_mode": "512x10", "beam_altitude_angles": [)" + elevations + R"(], "beam_azimuth_angles": [)" + offsets +
          R"(], "data_format": {"columns_per_frame": 512, "columns_per_packet": 16, "pixels_per_column": 16, "udp_profile_lidar": )" +
-         R"("RNG19_RFL8_SIG16_NIR16", "column_window": [0, 511]}})";
+         R"("RNG19_RFL8_SIG16_NIR16", "column_window": [0, 511]}, )" +
+         R"("lidar_to_sensor_transform": [-1,0,0,0, 0,-1,0,0, 0,0,1,36, 0,0,0,1], "imu_to_sensor_transform": [1,0,0,6, 0,1,0,-11, 0,0,1,7, 0,0,0,1]})";
 }
 
 class Beams : public ::testing::Test {
@@ -209,6 +216,35 @@ TEST_F(Beams, OfOtherPacketsAreNotItsOwn) {
   // The first lidar of the same log does not look at them.
   EXPECT_TRUE(ScansAgain(live, LoadFile(3.0)).empty());
   EXPECT_EQ(CountOf("beams_of_log"), 0);
+}
+
+// The lidar's x axis (its connector) looks to port, so that of the housing and of the IMU to starboard. The boat heels 30 deg to starboard and turns
+// to port, seen from above, with 10 deg/s.
+TEST_F(Beams, TellWhereTheImuOfTheSensorLooks) {
+  std::ofstream(folder_ / "boat.txtpb") << "name: \"boat\" lidar { x_m: 0 y_m: 0 z_m: 1 roll_deg: 0 pitch_deg: 0 yaw_deg: 90 }\n"
+                                        << "gnss_antenna { x_m: 0 y_m: 0 z_m: 1 } reference_point_above_water_m: 0.4\n"
+                                        << "own_vessel { min_x_m: -1 max_x_m: 1 min_y_m: -1 max_y_m: 1 min_z_m: -1 max_z_m: 2 }\n";
+  std::vector<std::uint8_t> payload(48);
+  const auto put = [&payload](std::size_t at, float value) {
+    WriteU32LittleEndian(std::span(payload).subspan(at), 0, std::bit_cast<std::uint32_t>(value));
+  };
+  // Up has a part to port then, against the IMU's x axis.
+  put(24, -0.5F);
+  put(32, 0.8660254F);
+  put(44, 10.0F);
+  support::KeepingBus live;
+  Service service(live.bus, LoadFile(10.0));
+  Feed(service, 1, 2);
+  service.OnDatagram(TimeOf(3), 7503, payload, {"192.168.1.201", 7503});
+  service.OnDatagram(TimeOf(3), 7503, std::vector<std::uint8_t>(48, 0xFF), {"192.168.1.201", 7503});
+  service.Finish(TimeOf(3));
+  support::HandleAll(live.bus);
+  const auto sentences = live.All<lidar_nmea_t>(bus::kLidarNmea);
+  ASSERT_EQ(sentences.size(), 1U) << "the second is none";
+  EXPECT_EQ(sentences[0].host_utime_us, ToUtimeUs(TimeOf(3)));
+  // Forward 0; along starboard, which is down, half of -g; down the rest. Turning to port is against down.
+  EXPECT_EQ(sentences[0].sentence.substr(0, sentences[0].sentence.find('*')),
+            "$VNIMU,0,0,0,+0.0000,-4.9033,-8.4928,+0.000000,+0.000000,-0.174533,0,0");
 }
 
 TEST_F(Beams, SensorAddressesAreCheckedWithTheConfig) {

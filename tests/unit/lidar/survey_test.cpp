@@ -50,7 +50,7 @@ TEST(Survey, TellsTheVelodynes) {
   EXPECT_EQ(ConfigLines(vlp32[0]), "model: MODEL_VLP32C\ndata_port: 2369\nposition_port: 8308\n");
   EXPECT_EQ(ConfigLines(vls128[0]), "model: MODEL_VLS128\ndata_port: 2368\nposition_port: 8308\n");
   EXPECT_FALSE(vls128[0].host_minus_stamp) << "its stamp is within an hour";
-  const auto vlp16 = SpeakersOf(vlp16::MakeDataPacket(vlp16::Azimuths(1000, 20), 0, 0x37, 0x22, {}), 2368);
+  const auto vlp16 = SpeakersOf(vlp16::test::MakeDataPacket(vlp16::test::Azimuths(1000, 20), 0, 0x37, 0x22, {}), 2368);
   ASSERT_EQ(vlp16.size(), 1U);
   EXPECT_EQ(vlp16[0].name, "Velodyne VLP-16");
   EXPECT_EQ(ConfigLines(vlp16[0]), "model: MODEL_AUTO\ndata_port: 2368\nposition_port: 8308\n");
