@@ -9,7 +9,9 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace lookout::lidar {
 
@@ -39,15 +41,29 @@ class Exchange {
 
   beast::tcp_stream& stream() { return stream_; }
 
-  /// Runs one asynchronous step to its end. @throws std::runtime_error where it fails
+  /// Runs one asynchronous step to its end.
+  ///
+  /// @return the number of bytes; nullopt at the end of the connection. @throws std::runtime_error where it fails
   template <typename Start>
-  void Do(const Start& start) {
+  std::optional<std::size_t> Do(const Start& start) {
     error_code result;
-    start([&result](error_code error, std::size_t /*num_bytes*/ = 0) { result = error; });
+    std::size_t num_bytes = 0;
+    start([&](error_code error, std::size_t num = 0) {
+      result = error;
+      num_bytes = num;
+    });
     context_.restart();
     context_.run();
+    if (result == asio::error::eof) return std::nullopt;
     if (result == beast::error::timeout) throw std::runtime_error(Where(sensor_) + "no whole answer in time");
     if (result) throw std::runtime_error(Where(sensor_) + result.message());
+    return num_bytes;
+  }
+
+  /// The same, where the connection must not end yet.
+  template <typename Start>
+  void DoWhole(const Start& start) {
+    if (!Do(start)) Refuse("the answer is cut off");
   }
 
   [[noreturn]] void Refuse(const std::string& reason) const { throw std::runtime_error(Where(sensor_) + reason); }
@@ -67,11 +83,28 @@ std::string RequestOusterMetadata(const SensorAddress& sensor, std::chrono::mill
   request.set(http::field::host, sensor.host);
   request.set(http::field::accept, "application/json");
   request.set(http::field::connection, "close");
-  exchange.Do([&](const auto& handler) { http::async_write(exchange.stream(), request, handler); });
+  exchange.DoWhole([&](const auto& handler) { http::async_write(exchange.stream(), request, handler); });
+  // All bytes are counted here, whatever the answer says of its length.
+  constexpr std::size_t kMaxHeadBytes = 8192;
+  constexpr std::size_t kPieceBytes = 4096;
   beast::flat_buffer buffer;
   http::response_parser<http::string_body> answer;
-  answer.body_limit(kMaxBeamBytes);
-  exchange.Do([&](const auto& handler) { http::async_read(exchange.stream(), buffer, answer, handler); });
+  answer.eager(true);
+  for (std::size_t num_bytes = 0; !answer.is_done();) {
+    const auto num = exchange.Do([&](const auto& handler) { exchange.stream().async_read_some(buffer.prepare(kPieceBytes), handler); });
+    error_code error;
+    if (!num) {
+      answer.put_eof(error);
+      if (error || !answer.is_done()) exchange.Refuse("the answer is cut off");
+      break;
+    }
+    num_bytes += *num;
+    if (num_bytes > kMaxBeamBytes + kMaxHeadBytes) exchange.Refuse("an answer of more than 64 KiB");
+    buffer.commit(*num);
+    buffer.consume(answer.put(buffer.data(), error));
+    if (error && error != http::error::need_more) exchange.Refuse("no answer of HTTP: " + error.message());
+  }
+  if (answer.get().body().size() > kMaxBeamBytes) exchange.Refuse("an answer of more than 64 KiB");
   if (answer.get().result() != http::status::ok) {
     exchange.Refuse("HTTP status " + std::to_string(answer.get().result_int()) + " for /api/v1/sensor/metadata");
   }
@@ -83,15 +116,15 @@ std::string RequestHesaiAngles(const SensorAddress& sensor, std::chrono::millise
   constexpr std::uint8_t kGetCalibration = 5;
   constexpr std::array<std::uint8_t, 8> kRequest{0x47, 0x74, kGetCalibration, 0, 0, 0, 0, 0};
   Exchange exchange(sensor, time_limit);
-  exchange.Do([&](const auto& handler) { asio::async_write(exchange.stream(), asio::buffer(kRequest), handler); });
+  exchange.DoWhole([&](const auto& handler) { asio::async_write(exchange.stream(), asio::buffer(kRequest), handler); });
   std::array<std::uint8_t, 8> head{};
-  exchange.Do([&](const auto& handler) { asio::async_read(exchange.stream(), asio::buffer(head), handler); });
+  exchange.DoWhole([&](const auto& handler) { asio::async_read(exchange.stream(), asio::buffer(head), handler); });
   if (head[0] != kRequest[0] || head[1] != kRequest[1] || head[2] != kGetCalibration) exchange.Refuse("the answer is not of a Hesai's control port");
   if (head[3] != 0) exchange.Refuse("the sensor refuses to tell its angles: return code " + std::to_string(head[3]));
   const std::size_t size = std::size_t{head[4]} << 24 | std::size_t{head[5]} << 16 | std::size_t{head[6]} << 8 | head[7];
   if (size == 0 || size > kMaxBeamBytes) exchange.Refuse("a table of angles of " + std::to_string(size) + " bytes");
   std::string text(size, '\0');
-  exchange.Do([&](const auto& handler) { asio::async_read(exchange.stream(), asio::buffer(text), handler); });
+  exchange.DoWhole([&](const auto& handler) { asio::async_read(exchange.stream(), asio::buffer(text), handler); });
   return text;
 }
 

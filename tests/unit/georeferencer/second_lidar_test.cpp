@@ -46,7 +46,7 @@ std::vector<ObstaclePart> FeedBoth(Georeferencer& georeferencer, const Feed& fee
   const auto keep = [&all](std::vector<ObstaclePart> parts) {
     for (auto& part : parts) all.push_back(std::move(part));
   };
-  for (std::int64_t now_us = 0; now_us < 41 * kScanUs + 700'000; now_us += 10'000) {
+  for (std::int64_t now_us = 0; now_us < 41 * kScanUs + 1'500'000; now_us += 10'000) {
     const auto first = now_us / kScanUs - 1;
     if (now_us % kScanUs == 0 && first >= 0 && first < 40) keep(georeferencer.AddSegments(FirstScan(static_cast<int>(first))));
     const auto second_us = now_us - kApartUs - second_delay_us;
@@ -150,7 +150,7 @@ TEST(SecondLidar, ThatDiesHoldsNothingUp) {
       }
     }
   }
-  EXPECT_GT(released_at_us, 59 * kScanUs);
+  EXPECT_GE(released_at_us, 59 * kScanUs);
 }
 
 TEST(SecondLidar, OfManySegmentsAddsSeveralPartsWithRisingNumbers) {
