@@ -217,8 +217,10 @@ Plan MakeCapturePlan(const Request& request, const ServiceRows& services) {
 bool IsWhole(const Plan& plan) { return plan.services.size() == ReplayedServices().size(); }
 
 std::string InWords(const Plan& plan) {
+  auto named = plan.read;
+  std::erase_if(named, [](const auto& name) { return name == bus::kLidarBeams.name || IsOfSecondLidar(bus::FindChannel(name)); });
   return fmt::format("ran: {}\nread: {}\n", fmt::join(plan.services, ", "),
-                     plan.read.empty() ? "datagrams" : fmt::format("{}", fmt::join(plan.read, ", ")));
+                     plan.read.empty() ? "datagrams" : fmt::format("{}", fmt::join(named, ", ")));
 }
 
 }  // namespace lookout::replay
