@@ -94,6 +94,7 @@ std::string RequestOusterMetadata(const SensorAddress& sensor, std::chrono::mill
     const auto num = exchange.Do([&](const auto& handler) { exchange.stream().async_read_some(buffer.prepare(kPieceBytes), handler); });
     error_code error;
     if (!num) {
+      if (!answer.got_some()) exchange.Refuse("the connection was closed without an answer");  // put_eof would abort
       answer.put_eof(error);
       if (error || !answer.is_done()) exchange.Refuse("the answer is cut off");
       break;
