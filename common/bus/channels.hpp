@@ -44,8 +44,9 @@ inline constexpr Channel kRunInfo{"RUN_INFO", "run_info_t", "recorder", 1, 10, f
 // Of a simulation: stands in its own log, never on a boat's bus.
 inline constexpr Channel kSimTruth{"SIM_TRUTH", "sim_truth_t", "sim", 80, 160, false, false};
 
-inline constexpr std::array kChannels{kLidarBeams, kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw, kGnssFix, kAttitude, kPose,
-                                      kObstacles,    kTracks,    kAlerts,     kAlertAck,  kOrders,   kLidarPackets2, kLidarScan2, kLidarClock2, kSegments2, kHealth, kRunInfo, kSimTruth};
+inline constexpr std::array kChannels{kLidarBeams, kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw, kGnssFix,
+                                      kAttitude,   kPose,         kObstacles, kTracks,     kAlerts,    kAlertAck, kOrders, kLidarPackets2,
+                                      kLidarScan2, kLidarClock2,  kSegments2, kHealth,     kRunInfo,   kSimTruth};
 
 /// Whether more than one process may send it: then its messages carry no numbers of one stream.
 constexpr bool HasSeveralPublishers(const Channel& channel) { return channel.publisher == "all" || channel.publisher == "several"; }
