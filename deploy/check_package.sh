@@ -32,9 +32,33 @@ dpkg-deb --root-owner-group -b "$work/next" "$work/next.deb" >/dev/null
 cp "$package" "$root/root/lookout.deb"
 cp "$work/next.deb" "$root/root/next.deb"
 
+# One of before, when the lidar's config and unit had the name vlp16.
+say "a package of the old names"
+dpkg-deb -R "$package" "$work/old"
+sed -i 's/^Version: .*/Version: 0.0.9/' "$work/old/DEBIAN/control"
+rm -f "$work/old/DEBIAN/preinst" "$work/old/DEBIAN/postinst" "$work/old/DEBIAN/postrm"
+sed -i 's#/etc/lookout/boat/lidar.txtpb#/etc/lookout/boat/vlp16.txtpb#' "$work/old/DEBIAN/conffiles"
+mv "$work/old/etc/lookout/boat/lidar.txtpb" "$work/old/etc/lookout/boat/vlp16.txtpb"
+mv "$work/old/lib/systemd/system/lookout-lidar.service" "$work/old/lib/systemd/system/lookout-vlp16.service"
+dpkg-deb --root-owner-group -b "$work/old" "$work/old.deb" >/dev/null
+
 say "installs"
 inside apt-get update -qq
 inside apt-get purge -y -qq lookout >/dev/null 2>&1 || true
+say "upgrades from the old names"
+cp "$work/old.deb" "$root/root/old.deb"
+inside apt-get install -y -qq --no-install-recommends /root/old.deb >"$work/old.log" 2>&1 || { tail "$work/old.log" >&2; fail "install of the old names"; }
+echo '# mine' >>"$root/etc/lookout/boat/vlp16.txtpb"
+mkdir -p "$root/etc/systemd/system/lookout-vlp16.service.d"
+printf '[Service]\nNice=5\n' >"$root/etc/systemd/system/lookout-vlp16.service.d/mine.conf"
+inside apt-get install -y -qq --no-install-recommends -o Dpkg::Options::=--force-confold /root/lookout.deb >"$work/renamed.log" 2>&1 ||
+  { tail "$work/renamed.log" >&2; fail "upgrade from the old names"; }
+grep -q '^# mine' "$root/etc/lookout/boat/lidar.txtpb" || fail "the changed vlp16.txtpb was lost"
+[ ! -e "$root/etc/lookout/boat/vlp16.txtpb" ] || fail "vlp16.txtpb is still there"
+[ -e "$root/etc/systemd/system/lookout-lidar.service.d/mine.conf" ] || fail "settings beside the old unit were lost"
+[ ! -e "$root/lib/systemd/system/lookout-vlp16.service" ] || fail "the old unit is still there"
+rm -r "$root/etc/systemd/system/lookout-lidar.service.d" "$root/root/old.deb"
+inside apt-get purge -y -qq lookout >/dev/null 2>&1 || fail "purge behind the old names"
 find "$root" -xdev -name '*lookout*' ! -path "$root/root/*" ! -path "$root/proc/*" | sort >"$work/before"
 inside apt-get install -y -qq --no-install-recommends /root/lookout.deb >"$work/install.log" 2>&1 || { tail "$work/install.log" >&2; fail "install"; }
 mapfile -t units < <(basename -a "$root"/lib/systemd/system/lookout-*.service | sed -n 's/^lookout-\(.*\)\.service$/\1/p' | grep -Ev '^(route|firewall)$')

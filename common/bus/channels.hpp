@@ -29,19 +29,30 @@ inline constexpr Channel kPose{"POSE", "pose_t", "navigator", 50, 1000, false, t
 inline constexpr Channel kObstacles{"OBSTACLES", "obstacles_t", "georeferencer", 80, 160, false, true};
 inline constexpr Channel kTracks{"TRACKS", "tracks_t", "tracker", 80, 160, false, true};
 inline constexpr Channel kAlerts{"ALERTS", "alerts_t", "tracker", 22, 44, false, true};  // one a scan, and two a second where nobody looks
+// Of a second lidar: config/<boat>/lidar_2.txtpb. Its segments go into OBSTACLES.
+inline constexpr Channel kLidarPackets2{"LIDAR_PACKETS_2", "lidar_packets_t", "lidar", 100, 200, true, true};
+inline constexpr Channel kLidarScan2{"LIDAR_SCAN_2", "lidar_scan_t", "lidar", 40, 80, false, true};
+inline constexpr Channel kLidarClock2{"LIDAR_CLOCK_2", "lidar_clock_t", "lidar", 20, 40, false, true};
+inline constexpr Channel kSegments2{"SEGMENTS_2", "segments_t", "segmenter", 80, 160, false, true};
 // Published by the page, the plotter and other programs that show alerts. ALERTS say with which scan a message was used.
 inline constexpr Channel kAlertAck{"ALERT_ACK", "alert_ack_t", "several", 10, 40, true, true};
 inline constexpr Channel kOrders{"ORDERS", "order_t", "several", 2, 40, true, true};
+// Published by each process of a lidar that has a table of beams, and written by the recorder into each of its files.
+inline constexpr Channel kLidarBeams{"LIDAR_BEAMS", "lidar_beams_t", "several", 1, 10, true, true};
 inline constexpr Channel kHealth{"HEALTH", "health_t", "all", 10, 40, false, false};
 inline constexpr Channel kRunInfo{"RUN_INFO", "run_info_t", "recorder", 1, 10, false, false};
 // Of a simulation: stands in its own log, never on a boat's bus.
 inline constexpr Channel kSimTruth{"SIM_TRUTH", "sim_truth_t", "sim", 80, 160, false, false};
 
-inline constexpr std::array kChannels{kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw, kGnssFix, kAttitude, kPose,
-                                      kObstacles,    kTracks,    kAlerts,     kAlertAck,  kOrders,   kHealth, kRunInfo, kSimTruth};
+inline constexpr std::array kChannels{kLidarBeams, kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw, kGnssFix,
+                                      kAttitude,   kPose,         kObstacles, kTracks,     kAlerts,    kAlertAck, kOrders, kLidarPackets2,
+                                      kLidarScan2, kLidarClock2,  kSegments2, kHealth,     kRunInfo,   kSimTruth};
 
 /// Whether more than one process may send it: then its messages carry no numbers of one stream.
 constexpr bool HasSeveralPublishers(const Channel& channel) { return channel.publisher == "all" || channel.publisher == "several"; }
+
+/// Whether it is of the second lidar, which few boats have: nothing waits for it, and no log must hold it.
+constexpr bool IsOfSecondLidar(const Channel& channel) { return channel.name.ends_with("_2"); }
 
 /// Greatest size of an encoded message. Measured with LCM 1.3.1: about 120 kB pass with the kernel's default buffers, 212 kB vanish.
 inline constexpr int kMaxMessageBytes = 120'000;

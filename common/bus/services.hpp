@@ -27,8 +27,9 @@ struct ServiceRow {
 
 // Readers stand behind the publishers of what they read. A boat starts them in the reverse order, so that no reader misses a first message.
 inline constexpr std::array kServices{
-    ServiceRow{"lidar", "lidar", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {}},
-    ServiceRow{"segmenter", "segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan}},
+    ServiceRow{
+        "lidar", "lidar", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {&kLidarBeams}},
+    ServiceRow{"segmenter", "segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan, &kLidarScan2}},
     ServiceRow{"navigator",
                "navigator",
                "position and attitude of the vessel",
@@ -37,8 +38,14 @@ inline constexpr std::array kServices{
                "new config, new run",
                "filter, latest measurements",
                {&kLidarNmea}},
-    ServiceRow{
-        "georeferencer", "georeferencer", "obstacles on the earth", 10, "network", "checks the config", "poses, waiting scans", {&kSegments, &kPose}},
+    ServiceRow{"georeferencer",
+               "georeferencer",
+               "obstacles on the earth",
+               10,
+               "network",
+               "checks the config",
+               "poses, waiting scans",
+               {&kSegments, &kSegments2, &kPose}},
     ServiceRow{"tracker",
                "tracker",
                "tracks, closest approach and alerts",

@@ -52,7 +52,8 @@ constexpr bool IsGuarded(const Channel& channel) { return channel.is_replayed &&
 /// Whether each message of its publisher was measured after the one before: not where several sensors share a channel, or a time.
 constexpr bool HasRisingTimes(const Channel& channel) {
   return channel.name == kPose.name || channel.name == kLidarScan.name || channel.name == kLidarClock.name || channel.name == kSegments.name ||
-         channel.name == kObstacles.name || channel.name == kTracks.name;
+         channel.name == kObstacles.name || channel.name == kTracks.name || channel.name == kLidarScan2.name || channel.name == kLidarClock2.name ||
+         channel.name == kSegments2.name;
 }
 
 /// Keeps the stream first heard. A message that cannot follow in it is held: it belongs to a second publisher when the kept stream goes on, and to

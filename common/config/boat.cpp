@@ -79,6 +79,19 @@ BoatRemark Place(const BoatFacts& boat, const std::string& what, const std::stri
 
 }  // namespace
 
+namespace {
+
+lookout::Mounting ToMounting(const Mounting& message) {
+  lookout::Mounting mounting;
+  mounting.p_vessel_m = {message.x_m(), message.y_m(), message.z_m()};
+  mounting.roll_rad = DegToRad(message.roll_deg());
+  mounting.pitch_rad = DegToRad(message.pitch_deg());
+  mounting.yaw_rad = DegToRad(message.yaw_deg());
+  return mounting;
+}
+
+}  // namespace
+
 BoatFacts LoadBoat(const std::filesystem::path& folder) { return ToFacts(Load<Boat>(folder, "boat.txtpb"), folder / "boat.txtpb"); }
 
 BoatFacts ToFacts(const Boat& boat, const std::filesystem::path& file) {
@@ -94,10 +107,8 @@ BoatFacts ToFacts(const Boat& boat, const std::filesystem::path& file) {
 
   BoatFacts facts;
   facts.name = boat.name();
-  facts.lidar.p_vessel_m = {boat.lidar().x_m(), boat.lidar().y_m(), boat.lidar().z_m()};
-  facts.lidar.roll_rad = DegToRad(boat.lidar().roll_deg());
-  facts.lidar.pitch_rad = DegToRad(boat.lidar().pitch_deg());
-  facts.lidar.yaw_rad = DegToRad(boat.lidar().yaw_deg());
+  facts.lidar = ToMounting(boat.lidar());
+  if (boat.has_lidar_2()) facts.lidar_2 = ToMounting(boat.lidar_2());
   facts.T_vessel_lidar = TransformVesselSensor(facts.lidar);
   facts.p_vessel_antenna_m = {boat.gnss_antenna().x_m(), boat.gnss_antenna().y_m(), boat.gnss_antenna().z_m()};
   if (boat.has_imu()) facts.p_vessel_imu_m = {boat.imu().x_m(), boat.imu().y_m(), boat.imu().z_m()};

@@ -21,6 +21,7 @@ struct BoatFacts {
   std::string name;
   lookout::Mounting lidar;  // not the schema's message of that name
   Eigen::Isometry3d T_vessel_lidar;
+  std::optional<lookout::Mounting> lidar_2;  // nullopt: the boat has one lidar
   Eigen::Vector3d p_vessel_antenna_m;
   Eigen::Vector3d p_vessel_imu_m = Eigen::Vector3d::Zero();  // the reference point where the file does not say
   double reference_point_above_water_m = 0.0;

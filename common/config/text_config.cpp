@@ -280,12 +280,16 @@ std::string EffectiveText(const Message& message, const std::string& indent) {
   return text;
 }
 
+// lidar_2.txtpb is of the schema of lidar.txtpb.
+constexpr std::string_view kOfSecond = "_2";
+
 std::string EffectiveTextOfFile(const std::filesystem::path& file) {
   const std::string text = ReadConfigFile(file);
   // All scenes, families and encounters have one schema, whatever their names; so has all evidence.
   const auto folder = file.parent_path().filename();
   const bool is_scene = folder == "scenes" || folder == "families" || folder == "encounters";
-  const auto stem = file.filename() == kOldLidarFile ? std::filesystem::path(kLidarFile).stem().string() : file.stem().string();
+  auto stem = file.filename() == kOldLidarFile ? std::filesystem::path(kLidarFile).stem().string() : file.stem().string();
+  if (stem.ends_with(kOfSecond)) stem.resize(stem.size() - kOfSecond.size());
   const std::string schema_file = "config/schema/" + (is_scene ? "scene" : folder == "evidence" ? "evidence" : stem) + ".proto";
   const auto* descriptor = FindSchema(schema_file);
   if (descriptor == nullptr) throw ConfigError({file.string() + ":1: file: there is no " + schema_file});

@@ -25,6 +25,7 @@ class Source {
     int port = 0;                     // of a datagram: the UDP port it was sent to
     std::string source_address = {};  // of a datagram: numeric, without zone
     int source_port = 0;
+    std::string destination_address = {};  // of a datagram out of a frame: numeric; empty where it is not known
   };
 
   Source() = default;

@@ -14,6 +14,8 @@ using namespace std::chrono_literals;
 namespace format = vlp16::format;
 
 constexpr std::uint64_t kNetworkStream = 5;
+constexpr std::uint64_t kSecondNetworkStream = 6;
+constexpr std::uint64_t kSecondSeed = 1'000'003;  // beside that of the first
 
 // From the last shot of a packet to its arrival: sending takes 100 us at 100 Mbit/s, and the kernel some more.
 constexpr std::chrono::microseconds kDataLatency = 120us;
@@ -31,6 +33,9 @@ SimulationParams ParamsOfConfig(const std::filesystem::path& config_folder, Simu
   params.navigation.pitch_offset_deg = navigator.pitch_offset_deg();
   params.navigation.roll_offset_deg = navigator.roll_offset_deg();
   params.data_port = lidar_config.data_port();
+  if (std::filesystem::exists(config_folder / "lidar_2.txtpb")) {
+    params.second_data_port = config::Load<config::Lidar>(config_folder, "lidar_2.txtpb").data_port();
+  }
   return params;
 }
 
@@ -41,7 +46,28 @@ Simulation::Simulation(const Scene& scene, const config::BoatFacts& boat, const 
       clock_(plan_),
       lidar_(scene, boat, params.lidar, params.start, params.seed),
       navigation_(scene, boat, params.navigation, plan_, params.start, params.seed),
-      random_(params.seed, kNetworkStream) {}
+      random_(params.seed, kNetworkStream),
+      second_random_(params.seed, kSecondNetworkStream) {
+  if (params.second_data_port == 0 || !boat.lidar_2) return;
+  config::BoatFacts of_second = boat;
+  of_second.lidar = *boat.lidar_2;
+  of_second.T_vessel_lidar = TransformVesselSensor(of_second.lidar);
+  second_.emplace(scene, of_second, params.lidar, params.start, params.seed + kSecondSeed);
+}
+
+// Its packets are in no truth: what the boat sees is told by the first.
+void Simulation::FillSecond() {
+  while (second_ && !second_datagram_) {
+    LidarPacket packet = second_->Next();
+    const auto jitter = std::chrono::microseconds(static_cast<std::int64_t>(kDataJitterUs * second_random_.Uniform()));
+    const Utime arrival = packet.end_time + kDataLatency + jitter;
+    const bool is_sent = clock_.IsOn(packet.stamp) && clock_.IsOn(packet.end_time);
+    if (is_sent) WriteU32LittleEndian(packet.payload, format::kStampOffset, clock_.StampUs(packet.stamp));
+    if (is_sent || arrival > params_.start + params_.duration) {
+      second_datagram_ = Datagram{arrival, params_.second_data_port, {packet.payload.begin(), packet.payload.end()}};
+    }
+  }
+}
 
 void Simulation::Fill() {
   while (!lidar_datagram_) {
@@ -71,8 +97,14 @@ void Simulation::Fill() {
 
 std::optional<Datagram> Simulation::Next() {
   Fill();
+  FillSecond();
   Datagram next;
-  if (!navigation_datagrams_.empty() && navigation_datagrams_.front().time < lidar_datagram_->time) {
+  const auto is_before_second = [this](Utime time) { return !second_datagram_ || time <= second_datagram_->time; };
+  const auto first_time = std::min(lidar_datagram_->time, navigation_datagrams_.empty() ? lidar_datagram_->time : navigation_datagrams_.front().time);
+  if (!is_before_second(first_time)) {
+    next = std::move(*second_datagram_);
+    second_datagram_.reset();
+  } else if (!navigation_datagrams_.empty() && navigation_datagrams_.front().time < lidar_datagram_->time) {
     next = std::move(navigation_datagrams_.front());
     navigation_datagrams_.erase(navigation_datagrams_.begin());
   } else {

@@ -19,6 +19,7 @@ struct SimulationParams {
   LidarParams lidar;
   NavigationParams navigation;
   int data_port = vlp16::format::kDataPort;
+  int second_data_port = 0;  // of the boat's second lidar, which sends no position packets; 0 = it has none
   Utime start;
   std::chrono::microseconds duration{0};
   std::uint64_t seed = 1;
@@ -44,6 +45,7 @@ class Simulation {
 
  private:
   void Fill();
+  void FillSecond();
 
   SimulationParams params_;
   TruthWriter* truth_;
@@ -52,7 +54,10 @@ class Simulation {
   Lidar lidar_;
   Navigation navigation_;
   Random random_;
-  std::optional<Datagram> lidar_datagram_;      // made, not yet given
+  std::optional<Datagram> lidar_datagram_;  // made, not yet given
+  std::optional<Lidar> second_;
+  Random second_random_;
+  std::optional<Datagram> second_datagram_;
   std::vector<Datagram> navigation_datagrams_;  // measured, not yet given; by time
 };
 

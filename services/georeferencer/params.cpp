@@ -16,6 +16,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   const auto& message = *loaded;
   Params params;
   params.placement.T_vessel_lidar = boat.T_vessel_lidar;
+  if (boat.lidar_2) params.T_vessel_lidar_2 = TransformVesselSensor(*boat.lidar_2);
   params.placement.reference_point_above_water_m = boat.reference_point_above_water_m;
   params.placement.range_sd_m = message.range_sd_m();
   params.placement.azimuth_sd_rad = DegToRad(message.azimuth_sd_deg());

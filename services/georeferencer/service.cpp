@@ -31,7 +31,12 @@ std::string_view PoseText(std::int32_t pose_status) {
 
 }  // namespace
 
-Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), georeferencer_(params.placement, params.pose_timeout), datum_(params.datum) {
+Service::Service(bus::Bus& bus, const Params& params)
+    : bus_(bus), georeferencer_(params.placement, params.pose_timeout, params.T_vessel_lidar_2), datum_(params.datum) {
+  if (params.T_vessel_lidar_2) {
+    second_watch_.emplace(bus::kSegments2.name);
+    bus::Subscribe<segments_t>(bus_, bus::kSegments2, [this](const segments_t& message) { OnSecond(message); });
+  }
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
 }
@@ -41,6 +46,13 @@ void Service::OnSegments(const segments_t& message) {
   if (const auto* refusal = std::get_if<Refusal>(&part)) return segments_refused_.Add(*refusal);
   segments_watch_.Note();
   Publish(georeferencer_.AddSegments(std::get<SegmentPart>(std::move(part))));
+}
+
+void Service::OnSecond(const segments_t& message) {
+  const auto part = ToSegmentPart(message, bus::kMaxMessageBytes);
+  if (const auto* refusal = std::get_if<Refusal>(&part)) return segments_refused_.Add(*refusal);
+  second_watch_->Note();
+  Publish(georeferencer_.AddSecond(std::get<SegmentPart>(part)));
 }
 
 void Service::OnPose(const pose_t& message) {
@@ -64,6 +76,7 @@ void Service::CheckDatum(const Pose& pose) {
 void Service::AdvanceTo(Utime host_time) {
   now_ = host_time;
   segments_watch_.AdvanceTo(host_time);
+  if (second_watch_) second_watch_->AdvanceTo(host_time);
   pose_watch_.AdvanceTo(host_time);
   Publish(georeferencer_.AdvanceTo(host_time));
 }
@@ -86,6 +99,7 @@ HealthReport Service::Report() const {
   poses_refused_.AppendTo(report.counters);
 
   if (const auto text = segments_watch_.Complaint(); !text.empty()) report.Degrade(text);
+  if (second_watch_ && !second_watch_->Complaint().empty()) report.Degrade(second_watch_->Complaint());
   if (pose_watch_.is_silent()) {
     report.Degrade(pose_watch_.Complaint());
   } else {

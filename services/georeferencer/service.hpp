@@ -35,6 +35,7 @@ class Service {
 
  private:
   void OnSegments(const segments_t& message);
+  void OnSecond(const segments_t& message);
   void OnPose(const pose_t& message);
   void Publish(const std::vector<ObstaclePart>& parts);
   void CheckDatum(const Pose& pose);
@@ -51,6 +52,7 @@ class Service {
   // Host time, live only.
   std::optional<Utime> now_;
   InputWatch segments_watch_{bus::kSegments.name};
+  std::optional<InputWatch> second_watch_;  // where there is a second lidar
   InputWatch pose_watch_{bus::kPose.name};
 };
 

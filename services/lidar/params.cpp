@@ -1,8 +1,11 @@
 #include "services/lidar/params.hpp"
 
+#include <charconv>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
+#include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
 #include "common/io/network.hpp"
@@ -58,7 +61,7 @@ void CheckRelations(const std::filesystem::path& file, const config::Lidar& mess
 }
 
 // Beam tables and metadata of the makers have some kilobytes.
-constexpr std::uintmax_t kMaxBeamFileBytes = 64 << 10;
+constexpr std::size_t kMaxBeamTextBytes = 64 << 10;
 
 std::string TextOf(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -68,27 +71,50 @@ std::string TextOf(const std::filesystem::path& file) {
   return text.str();
 }
 
-std::optional<OtherLidar> ToOtherLidar(const std::filesystem::path& config_folder, const config::Lidar& message, std::vector<std::string>& faults) {
-  const auto file = config_folder / "lidar.txtpb";
+// "192.168.1.201", or with the port of a forwarder "127.0.0.1:8080".
+void ReadSensorAddress(const config::Lidar& message, const ModelRow& row, const std::function<void(const char*, const std::string&)>& fault,
+                       OtherLidar& other) {
+  const auto& text = message.sensor_address();
+  if (text.empty()) return;
+  if (row.usual_control_port == 0) return fault("sensor_address", std::string(row.name) + " has the angles of the maker's table: it is not asked");
+  const auto colon = text.find(':') == text.rfind(':') ? text.find(':') : std::string::npos;  // of IPv6 none is a port's
+  const auto address = io::ParseIpAddress(text.substr(0, colon));
+  int port = row.usual_control_port;
+  if (colon != std::string::npos) {
+    const char* const end = text.data() + text.size();
+    const auto [last, error] = std::from_chars(text.data() + colon + 1, end, port);
+    if (error != std::errc() || last != end || port < 1 || port > 65'535) port = 0;
+  }
+  if (!address || address->is_multicast() || address->is_any() || port == 0) {
+    return fault("sensor_address", "'" + text + "' is no numeric address of a sensor, with or without a port");
+  }
+  other.sensor_address = io::ToText(*address);
+  other.sensor_port = port;
+}
+
+std::optional<OtherLidar> ToOtherLidar(const std::filesystem::path& file, const config::Lidar& message, std::vector<std::string>& faults) {
+  const auto config_folder = file.parent_path();
   const auto fault = [&](const char* field, const std::string& reason) { faults.push_back(config::FaultLine(file, field, reason, 0)); };
   if (message.model() < kFirstOtherModel) {
     if (!message.beam_file().empty()) fault("beam_file", "is for other models than the VLP-16 and Puck Hi-Res");
+    if (!message.sensor_address().empty()) fault("sensor_address", "is for other models than the VLP-16 and Puck Hi-Res");
     return std::nullopt;
   }
-  OtherLidar other{.model = static_cast<OtherModel>(message.model() - kFirstOtherModel), .beam_text = {}};
+  OtherLidar other{.model = static_cast<OtherModel>(message.model() - kFirstOtherModel)};
   const auto& row = RowOf(other.model);
   const auto name = std::string(row.name);
+  ReadSensorAddress(message, row, fault, other);
   if (message.beam_file().empty()) {
-    if (row.needs_beam_file) fault("beam_file", "must be set for " + name + ": " + std::string(row.beam_file_is));
+    if (row.needs_beam_file && message.sensor_address().empty()) fault("beam_file", "must be set for " + name + ": " + std::string(row.beam_file_is));
   } else if (row.beam_file_is.empty()) {
     fault("beam_file", name + " has the angles of the maker's table: none is read");
   } else {
     try {
       const auto path = config_folder / message.beam_file();
-      if (std::filesystem::file_size(path) > kMaxBeamFileBytes) throw std::runtime_error("is larger than 64 KiB: no such file of a maker is");
+      if (std::filesystem::file_size(path) > kMaxBeamTextBytes) throw std::runtime_error("is larger than 64 KiB: no such file of a maker is");
       other.beam_text = TextOf(path);
-      if (other.beam_text.empty()) throw std::runtime_error("is empty");
-      MakeReader(other.model, other.beam_text);
+      other.beam_origin = message.beam_file();
+      if (const auto reason = BeamFault(other.model, other.beam_text); !reason.empty()) throw std::runtime_error(reason);
     } catch (const std::exception& error) {
       fault("beam_file", message.beam_file() + ": " + error.what());
     }
@@ -119,29 +145,64 @@ Sources ToSources(const std::filesystem::path& config_folder, const config::Lida
 
 }  // namespace
 
-Params LoadParams(const std::filesystem::path& config_folder) {
+namespace {
+
+// Faults of boat.txtpb are told by who needs it.
+std::optional<Eigen::Matrix3d> MountingOf(const std::filesystem::path& config_folder, int number) {
+  config::FaultList untold;
+  const auto boat = untold.Take([&] { return config::LoadBoat(config_folder); });
+  if (!boat) return std::nullopt;
+  if (number == 1) return boat->T_vessel_lidar.linear();
+  if (!boat->lidar_2) return std::nullopt;
+  return TransformVesselSensor(*boat->lidar_2).linear();
+}
+
+}  // namespace
+
+std::string BeamFault(OtherModel model, const std::string& text) {
+  if (text.empty()) return "is empty";
+  if (text.size() > kMaxBeamTextBytes) return "is larger than 64 KiB: no such file of a maker is";
+  try {
+    MakeReader(model, text);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::string ModelWord(const std::optional<OtherModel>& other) {
+  return Schema::Model_Name(other ? static_cast<Schema::Model>(kFirstOtherModel + static_cast<int>(*other)) : Schema::MODEL_AUTO);
+}
+
+std::string ConfigFileName(int number) { return number == 1 ? "lidar.txtpb" : "lidar_2.txtpb"; }
+
+bool HasSecond(const std::filesystem::path& config_folder) { return std::filesystem::exists(config_folder / ConfigFileName(2)); }
+
+Params LoadParams(const std::filesystem::path& config_folder, int number) {
   std::vector<std::string> faults;
-  auto params = LoadParams(config_folder, faults);
+  auto params = LoadParams(config_folder, number, faults);
   if (!faults.empty()) throw config::ConfigError(faults);
   return params;
 }
 
-Params LoadParams(const std::filesystem::path& config_folder, std::vector<std::string>& faults) {
-  const auto file = config_folder / "lidar.txtpb";
+Params LoadParams(const std::filesystem::path& config_folder, int number, std::vector<std::string>& faults) {
+  const auto file = config_folder / ConfigFileName(number);
   config::Lidar message;
   config::LoadText(file, message);
   CheckRelations(file, message, faults);
 
   Params params;
+  params.number = number;
   params.input = message.source() == config::Lidar::LOG ? Input::kLog : Input::kOutside;
   params.data_port = message.data_port();
   params.position_port = message.position_port();
-  params.other = ToOtherLidar(config_folder, message, faults);
+  params.other = ToOtherLidar(file, message, faults);
   if (!params.other) params.decoder.model = ToChoice<vlp16::ModelChoice>(message.model());
   params.decoder.time = ToChoice<TimeChoice>(message.time_source());
   params.decoder.cut_azimuth_rad = DegToRad(message.cut_azimuth_deg());
   params.decoder.use_vertical_origin_offsets = message.use_vertical_origin_offsets();
   params.sources = ToSources(config_folder, message);
+  params.R_vessel_lidar = MountingOf(config_folder, number);
   return params;
 }
 

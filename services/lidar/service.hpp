@@ -6,11 +6,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
+#include "lookout/lidar_beams_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "services/lidar/core/driver/bundler.hpp"
 #include "services/lidar/core/driver/decoder.hpp"
@@ -36,6 +38,14 @@ class Service {
   /// End of input. kOutside: publishes the END mark, if anything ever came, and consumes it. kLog: flushes, unless an END mark did.
   void Finish(Utime host_time);
 
+  /// The sensor told its beams. Where they are not those in use, the run ends and the next begins with them.
+  ///
+  /// @return what is wrong with the text, which then changes nothing; empty = nothing. Precondition: Params::other
+  std::string UseBeams(Utime host_time, const std::string& text, const std::string& origin);
+
+  /// Whether the sensor should be asked for its beams: there are none, or its packets are refused.
+  bool WantsBeams() const;
+
   HealthReport Report() const;
 
   /// Called with a line for the journal each time that the state of the sensor's clock, or the clock that stamps the scans, changes, and when another
@@ -43,9 +53,22 @@ class Service {
   void OnNotice(std::function<void(const std::string&)> handler) { on_notice_ = std::move(handler); }
 
  private:
+  // All that depends on the model and its beams.
+  struct Reading {
+    explicit Reading(const Params& params, Service& service);
+
+    Bundler bundler;
+    SenderLock lock;
+    std::unique_ptr<Decoder> decoder;
+  };
+
   void OnMessage(const lidar_packets_t& message);
+  void OnBeams(const lidar_beams_t& message);
+  void PublishBeams(const PacketBundle& bundle);
+  bool NeedsBeams() const { return params_.other && params_.other->beam_text.empty() && RowOf(params_.other->model).needs_beam_file; }
   void PublishAndConsume(const PacketBundle& bundle);
   void Consume(const PacketBundle& bundle);
+  void AppendReading(std::vector<Counter>& counters) const;
   void PublishScan(const Scan& scan);
   void PublishSentence(const SentenceOfLidar& sentence);
   void NoteClock(const ClockReading& clock);
@@ -59,12 +82,16 @@ class Service {
 
   bus::Bus& bus_;
   Params params_;
-  Bundler bundler_;
-  SenderLock lock_;
-  std::unique_ptr<Decoder> decoder_;
-  std::int64_t raw_seq_ = 0;  // of the bundle that is being consumed
+  std::optional<Reading> reading_;  // nullopt: the beams are not known yet
+  std::int64_t raw_seq_ = 0;        // of the bundle that is being consumed
   std::int64_t sentence_seq_ = 0;
   std::int64_t num_refused_messages_ = 0;
+  std::int64_t num_beams_refused_ = 0;
+  std::int64_t num_beams_of_log_ = 0;      // tables of a log that are not that of the config
+  std::int64_t num_waited_for_beams_ = 0;  // packets that came before the beams were known
+  std::int64_t beams_seq_ = 0;
+  std::optional<Utime> beams_sent_;    // packets of that time followed
+  std::string beams_complaint_;        // of the last refused message
   std::int64_t num_other_port_ = 0;    // payloads in a log that were recorded on ports other than the config says
   std::optional<Utime> silent_since_;  // host time of the last usable data packet, or at which waiting began
   Utime now_{};                        // host time so far

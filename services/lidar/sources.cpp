@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/io/network.hpp"
 #include "services/lidar/io/capture_player.hpp"
@@ -79,8 +80,7 @@ std::optional<io::IpAddress> BoundAddress(const Sources& sources) {
 }
 
 // Texts of the params that must be right before anything starts.
-void CheckSources(const std::filesystem::path& config_folder, const Sources& sources, std::vector<std::string>& faults) {
-  const auto file = config_folder / "lidar.txtpb";
+void CheckSources(const std::filesystem::path& file, const Sources& sources, std::vector<std::string>& faults) {
   const auto require = [&](bool is_fine, const char* field, const std::string& reason, std::size_t index = 0) {
     if (!is_fine) faults.push_back(config::FaultLine(file, field, reason, index));
   };
@@ -116,10 +116,13 @@ void CheckSources(const std::filesystem::path& config_folder, const Sources& sou
 
 }  // namespace
 
-Params LoadChecked(const std::filesystem::path& config_folder) {
+Params LoadChecked(const std::filesystem::path& config_folder, int number) {
   std::vector<std::string> faults;
-  auto params = LoadParams(config_folder, faults);
-  CheckSources(config_folder, params.sources, faults);
+  auto params = LoadParams(config_folder, number, faults);
+  CheckSources(config_folder / ConfigFileName(number), params.sources, faults);
+  if (number == 2 && !config::LoadBoat(config_folder).lidar_2) {
+    faults.push_back(config::FaultLine(config_folder / "boat.txtpb", "lidar_2", "must be set: where the second lidar sits", 0));
+  }
   if (!faults.empty()) throw config::ConfigError(faults);
   return params;
 }

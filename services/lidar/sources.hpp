@@ -16,8 +16,9 @@ namespace lookout::lidar {
 /// LoadParams, and besides that addresses are addresses, the filter compiles and captures can be read.
 ///
 /// @param config_folder  the boat's folder, holding lidar.txtpb
+/// @param number         2: of the second lidar, whose mounting boat.txtpb must have
 /// @throws config::ConfigError with all faults, but those of the schema before others
-Params LoadChecked(const std::filesystem::path& config_folder);
+Params LoadChecked(const std::filesystem::path& config_folder, int number = 1);
 
 /// Of source UDP. Precondition: LoadChecked.
 io::UdpOptions ToUdpOptions(const Sources& sources, int port, const std::string& name = {});

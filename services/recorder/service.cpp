@@ -11,6 +11,7 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/core/printable.hpp"
+#include "lookout/lidar_beams_t.hpp"
 
 namespace lookout::recorder {
 
@@ -90,7 +91,16 @@ void Service::OnEvent(std::string_view channel, Bytes bytes) {
   } else if (channel != kLcmSelfTest) {
     WatchUnknown(channel);
   }
+  if (channel == bus::kLidarBeams.name) KeepBeams(bytes);
   Write(clock_(), channel, bytes);
+}
+
+// Without them the packets of a later file could not be read by itself.
+void Service::KeepBeams(Bytes bytes) {
+  constexpr std::size_t kMaxLidars = 4;
+  const auto message = bus::Decode<lidar_beams_t>(bytes);
+  if (!message || (beams_.size() >= kMaxLidars && !beams_.contains(message->packets))) return;
+  beams_[message->packets] = {bytes.begin(), bytes.end()};
 }
 
 // A log that holds one that is not cannot be read on. Each reason is logged once, and then counted.
@@ -116,9 +126,10 @@ void Service::BeginFile(Utime now, bool must_publish) {
   auto run_info = EncodeRunInfo(now);
   std::vector<std::uint8_t> event;
   bus::AppendLogEvent(event, 0, now, bus::kRunInfo.name, run_info);
+  num_file_events_ = 1;
+  for (const auto& [packets, beams] : beams_) bus::AppendLogEvent(event, num_file_events_++, now, bus::kLidarBeams.name, beams);
   file_start_ = now;
   file_bytes_ = static_cast<std::int64_t>(event.size());
-  num_file_events_ = 1;
   writer_.BeginFile(FileStem(now), std::move(event));
   if (must_publish) PublishRunInfo(now, std::move(run_info));
 }

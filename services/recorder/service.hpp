@@ -52,6 +52,7 @@ class Service {
 
  private:
   void OnEvent(std::string_view channel, Bytes bytes);
+  void KeepBeams(Bytes bytes);
   bool IsRecordable(std::string_view channel, Bytes bytes);
   void BeginFile(Utime now, bool must_publish);
   std::vector<std::uint8_t> EncodeRunInfo(Utime now);
@@ -73,9 +74,10 @@ class Service {
   Utime last_run_info_;
   std::int64_t file_bytes_ = 0;  // of the file when all that was passed to the writer is in it
   std::int64_t num_file_events_ = 0;
-  std::vector<std::uint8_t> event_;                              // scratch
-  std::deque<std::vector<std::uint8_t>> own_run_infos_;          // sent, and not yet come back from the bus
-  std::map<std::string, bus::StreamGuard, std::less<>> guards_;  // watch only: everything is recorded
+  std::vector<std::uint8_t> event_;                                      // scratch
+  std::deque<std::vector<std::uint8_t>> own_run_infos_;                  // sent, and not yet come back from the bus
+  std::map<std::string, std::vector<std::uint8_t>, std::less<>> beams_;  // the last LIDAR_BEAMS of each lidar
+  std::map<std::string, bus::StreamGuard, std::less<>> guards_;          // watch only: everything is recorded
   std::set<std::string, std::less<>> unknown_channels_;
   std::vector<std::string> warnings_;
   DiskStatus seen_{.is_recording = true};  // when no log was waited for last

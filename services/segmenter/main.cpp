@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kTick(1000);
 
-void Run(lookout::runtime::Process& process, const lookout::segmenter::Params& params) {
+void Run(lookout::runtime::Process& process, const lookout::segmenter::Lanes& params) {
   lookout::segmenter::Service service(process.bus(), params);
   process.Every(kTick, [&service] { service.AdvanceTo(lookout::runtime::HostNow()); });
   process.Run([&service] { return service.Report(); });
@@ -18,6 +18,6 @@ void Run(lookout::runtime::Process& process, const lookout::segmenter::Params& p
 }  // namespace
 
 int main(int argc, char** argv) {
-  return lookout::runtime::ServiceMain<lookout::segmenter::Params>(
-      argc, argv, {.name = "segmenter", .purpose = "LIDAR_SCAN in, SEGMENTS out", .load = lookout::segmenter::LoadParams, .run = Run});
+  return lookout::runtime::ServiceMain<lookout::segmenter::Lanes>(
+      argc, argv, {.name = "segmenter", .purpose = "LIDAR_SCAN in, SEGMENTS out", .load = lookout::segmenter::LoadLanes, .run = Run});
 }

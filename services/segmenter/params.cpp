@@ -50,6 +50,16 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   return ToParams(*message, *boat, file);
 }
 
+Lanes LoadLanes(const std::filesystem::path& config_folder) {
+  Lanes lanes{LoadParams(config_folder), std::nullopt};
+  if (const auto boat = config::LoadBoat(config_folder); boat.lidar_2) {
+    lanes.second = lanes.first;
+    lanes.second->filter.T_vessel_lidar = TransformVesselSensor(*boat.lidar_2);
+    lanes.second->filter.field_of_view = {};
+  }
+  return lanes;
+}
+
 Params ToParams(const config::Segmenter& message, const config::BoatFacts& boat, const std::filesystem::path& file) {
   CheckRelations(message, file);
 

@@ -7,28 +7,34 @@
 
 namespace lookout::segmenter {
 
-Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), segmenter_(params) {
-  bus::Subscribe<lidar_scan_t>(bus_, bus::kLidarScan, [this](const lidar_scan_t& message) { OnScan(message); });
+Service::Service(bus::Bus& bus, const Lanes& params) : bus_(bus) {
+  Add(bus::kLidarScan, bus::kSegments, params.first);
+  if (params.second) Add(bus::kLidarScan2, bus::kSegments2, *params.second);
 }
 
-void Service::OnScan(const lidar_scan_t& message) {
-  scans_watch_.Note();
+void Service::Add(const bus::Channel& scans, const bus::Channel& segments, const Params& params) {
+  auto& lane = lanes_.emplace_back(scans, segments, params);
+  bus::Subscribe<lidar_scan_t>(bus_, scans, [this, &lane](const lidar_scan_t& message) { OnScan(message, lane); });
+}
+
+void Service::OnScan(const lidar_scan_t& message, Lane& lane) {
+  lane.watch.Note();
   last_fault_ = messages::FaultOf(message, bus::kMaxMessageBytes);
   if (last_fault_) {
     refusals_.Add(*last_fault_);
     refused_at_ = time_.passed();
     return;
   }
-  const auto parts = assembler_.Add(message).whole;
+  const auto parts = lane.assembler.Add(message).whole;
   if (parts.empty()) return;
   const auto scan = ToScan(parts);
   if (!scan) {
     ++counts_["scans_inconsistent"];
     return;
   }
-  const auto& segments = segmenter_.Segment(*scan);
+  const auto& segments = lane.segmenter.Segment(*scan);
   const auto answers = ToMessages(*scan, segments, bus::kMaxMessageBytes);
-  for (const auto& answer : answers) bus::Publish(bus_, bus::kSegments, answer);
+  for (const auto& answer : answers) bus::Publish(bus_, lane.segments, answer);
   const bool has_pieces = std::ranges::any_of(answers, [](const segments_t& part) { return part.num_labelled > 0; });
 
   ++counts_["scans"];
@@ -41,14 +47,18 @@ void Service::OnScan(const lidar_scan_t& message) {
 
 HealthReport Service::Report() const {
   HealthReport report;
-  if (const auto text = scans_watch_.Complaint(); !text.empty()) report.Degrade(text);
+  for (const auto& lane : lanes_) {
+    if (const auto text = lane.watch.Complaint(); !text.empty()) report.Degrade(text);
+  }
   if (last_fault_ && time_.passed() - refused_at_ < Recently::kToldFor) {
     report.Degrade("the latest LIDAR_SCAN was refused: " + std::string(*last_fault_));
   }
   auto counts = counts_;
-  counts["scans_incomplete"] = assembler_.counts().incomplete_scans;
-  counts["parts_duplicate"] = assembler_.counts().duplicate_parts;
-  counts["parts_inconsistent"] = assembler_.counts().inconsistent_parts;
+  for (const auto& lane : lanes_) {
+    counts["scans_incomplete"] += lane.assembler.counts().incomplete_scans;
+    counts["parts_duplicate"] += lane.assembler.counts().duplicate_parts;
+    counts["parts_inconsistent"] += lane.assembler.counts().inconsistent_parts;
+  }
   counts.AppendTo(report.counters);
   refusals_.AppendTo(report.counters);
   return report;

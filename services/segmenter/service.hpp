@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <list>
 #include <optional>
 #include <vector>
 
@@ -18,28 +19,37 @@ namespace lookout::segmenter {
 
 class Service {
  public:
-  Service(bus::Bus& bus, const Params& params);
+  Service(bus::Bus& bus, const Lanes& params);
+  Service(bus::Bus& bus, const Params& params) : Service(bus, Lanes{params, std::nullopt}) {}
 
   /// Live only: host time has come so far. To be called once a second.
   void AdvanceTo(Utime host_time) {
     time_.Advance(host_time);
-    scans_watch_.AdvanceTo(host_time);
+    for (auto& lane : lanes_) lane.watch.AdvanceTo(host_time);
   }
 
   /// @return degraded while no LIDAR_SCAN comes, or the latest was refused, for a minute at most
   HealthReport Report() const;
 
  private:
-  void OnScan(const lidar_scan_t& message);
+  struct Lane {
+    Lane(const bus::Channel& scans, const bus::Channel& out, const Params& params) : segments(out), segmenter(params), watch(scans.name) {}
+
+    const bus::Channel& segments;
+    Segmenter segmenter;
+    messages::PartAssembler<lidar_scan_t> assembler = {};
+    InputWatch watch;
+  };
+
+  void Add(const bus::Channel& scans, const bus::Channel& segments, const Params& params);
+  void OnScan(const lidar_scan_t& message, Lane& lane);
 
   bus::Bus& bus_;
-  Segmenter segmenter_;
-  messages::PartAssembler<lidar_scan_t> assembler_;
+  std::list<Lane> lanes_;
   Counts<messages::kScanFaults> refusals_;
   std::optional<messages::Fault> last_fault_;  // of the latest message, if it was refused
   std::chrono::microseconds refused_at_{0};
   PassedTime time_{std::chrono::seconds(2)};
-  InputWatch scans_watch_{bus::kLidarScan.name};
   static constexpr auto kCountNames =
       std::to_array<std::string_view>({"scans", "segments", "segments_too_small", "segments_over_limit", "returns_repeated", "scans_without_pieces",
                                        "scans_incomplete", "scans_inconsistent", "parts_duplicate", "parts_inconsistent"});

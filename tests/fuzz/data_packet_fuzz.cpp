@@ -10,6 +10,7 @@
 #include "common/core/angles.hpp"
 #include "services/lidar/core/vlp16/decoder.hpp"
 #include "services/lidar/core/vlp16/foreign_sensor.hpp"
+#include "services/lidar/survey.hpp"
 #include "services/lidar/wire.hpp"
 #include "tests/fuzz/packet_script.hpp"
 
@@ -63,6 +64,7 @@ DecoderParams ParamsOf(Bytes head) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < script::kHeadSizeBytes) return 0;
   std::int64_t last_number = -1;
+  Survey survey;
   lookout::vlp16::Decoder decoder(
       ParamsOf({data, size}), [&](const Scan& turn) { CheckTurn(turn, last_number); },
       [](const SentenceOfLidar& sentence) { Expect(IsPrintable(sentence.text)); });
@@ -76,6 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto kind = script::KindOf(control);
     const auto payload = rest.first(std::min(rest.size(), script::PayloadSizeBytes(kind)));
     rest = rest.subspan(payload.size());
+    survey.Add(host_time, "192.168.1.201", "", 2368 + control % 4, payload);
     switch (kind) {
       case script::Kind::kData:
         decoder.OnDataPayload(host_time, payload);
@@ -94,6 +97,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   }
   decoder.Flush();
+  for (const auto& speaker : survey.Speakers()) {
+    Expect(!speaker.name.empty() && IsPrintable(speaker.name) && speaker.num_packets > 0);
+    if (speaker.stamp) ClockDifferenceText(*speaker.host_minus_stamp, *speaker.stamp, "");
+    ConfigLines(speaker);
+  }
   for (const auto& counter : decoder.counters()) Expect(counter.count >= 0);
   return 0;
 }

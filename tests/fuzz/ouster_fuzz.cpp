@@ -47,6 +47,9 @@ void CheckPacket(const Packet& packet, const Head& head) {
 }
 
 void Read(OusterReader& reader, Bytes payload, Packet& packet) {
+  for (const auto& layout : OusterLayoutsOf(payload)) {
+    Expect(layout.pixels_per_column >= 16 && layout.pixels_per_column <= 128 && OusterStampOf(payload, layout).count() >= 0);
+  }
   const std::size_t num_before = packet.range.size();
   const auto number_before = packet.number;
   if (reader.Read(payload, packet) == PacketFault::kNone) {

@@ -98,6 +98,7 @@ const std::vector<Rule>& Rules() {
        {"common/core", "common/bus", "common/messages", "common/io", "OWN/core", "OWN/film", "wire types", "fmt", "nlohmann-json"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
       {"services/plotter/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost", "socket"}},
+      {"services/lidar/io/sensor_request\\..pp", {"OWN/io", "boost"}},
       {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
       {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
       // It knows what an address is.
@@ -105,7 +106,9 @@ const std::vector<Rule>& Rules() {
        {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types", "fmt"}},
       // Opens what params name.
       {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
-      {"services/lidar/decoders\\..pp", {"common/core", "OWN", "OWN/core"}},
+      {"services/lidar/(decoders|survey)\\..pp", {"common/core", "OWN", "OWN/core"}},
+      // Asks the sensor for what params name.
+      {"services/lidar/sensor_beams\\..pp", {"common/core", "OWN", "OWN/core", "OWN/io"}},
       // A part of the service that knows the host's time, as the core must not.
       {"services/tracker/watch\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
       // A file that one process leaves to the next.

@@ -78,7 +78,8 @@ Payloads WithoutWatchAlerts(Payloads log) {
 // Every data message, byte for byte.
 void ExpectSameMessages(const Payloads& one, const Payloads& other) {
   for (const auto& channel : bus::kChannels) {
-    if (!channel.is_replayed || bus::HasSeveralPublishers(channel)) continue;  // nobody was there to acknowledge
+    // Nobody was there to acknowledge, and the boat has one lidar.
+    if (!channel.is_replayed || bus::HasSeveralPublishers(channel) || bus::IsOfSecondLidar(channel)) continue;
     const std::string name(channel.name);
     ASSERT_GT(Count(one, name), 0) << name;
     EXPECT_EQ(Count(one, name), Count(other, name)) << name;

@@ -66,6 +66,14 @@ Finding CheckLidarDirection(const config::BoatFacts& boat) {
   return Ok(kMountingSubject, text);
 }
 
+double LowestBeamRad(const ConfigSeen& config) {
+  if (config.lidar && config.lidar->other) {
+    return lidar::MakeReader(config.lidar->other->model, config.lidar->other->beam_text)->head().beams.front().elevation_rad;
+  }
+  const bool is_hi_res = config.lidar && config.lidar->decoder.model == vlp16::ModelChoice::kPuckHiRes;
+  return vlp16::BeamsOf(is_hi_res ? vlp16::Model::kPuckHiRes : vlp16::Model::kVlp16).elevation_rad.front();
+}
+
 }  // namespace
 
 Findings CheckMounting(const ConfigSeen& config) {
@@ -81,10 +89,9 @@ Findings CheckMounting(const ConfigSeen& config) {
     const auto grade = remark.is_under_water ? Grade::kFault : remark.cure.empty() ? Grade::kOk : Grade::kWarning;
     findings.push_back({grade, kMountingSubject, remark.words, remark.cure});
   }
-  const auto model = config.lidar && config.lidar->decoder.model == vlp16::ModelChoice::kPuckHiRes ? vlp16::Model::kPuckHiRes : vlp16::Model::kVlp16;
-  const double lowest_rad = vlp16::BeamsOf(model).elevation_rad.front();
+  const double lowest_rad = LowestBeamRad(config);
   const double height_m = lidar_z_m + boat.reference_point_above_water_m;
-  if (height_m > 0.0) {
+  if (height_m > 0.0 && lowest_rad < 0.0) {
     findings.push_back(
         Ok(kMountingSubject, fmt::format("with the boat level on calm water the lowest beam meets the water {} m from the lidar: what lies below "
                                          "that beam is not seen",

@@ -58,6 +58,12 @@ Findings CheckBuffers(const BuffersSeen& buffers);
 /// Packets, rate, model, return mode; the sender's address and this computer's own.
 Findings CheckLidar(const Observations& seen);
 
+/// Each lidar that was heard: which it is, whether lidar.txtpb is for it, and which lines belong there; datagrams lost in IP fragments.
+Findings CheckSpeakers(const Observations& seen);
+
+/// The azimuths into which the lidar fires, where they are not the whole circle.
+Findings CheckWindow(const Observations& seen);
+
 /// The sensor's clock and PPS; this computer's clock.
 Findings CheckClocks(const Observations& seen);
 
@@ -81,7 +87,10 @@ Findings CheckPlotter(const Observations& seen);
 /// Who sees the page, whether it has its port, its token, its map and room for the last minutes.
 Findings CheckPage(const Observations& seen);
 
-/// All of the above, in the order in which one depends on the other.
+/// Of captures: which lidars speak in them, and what the config makes of them.
+Findings CheckCaptures(const Observations& seen);
+
+/// All of the above but the last, in the order in which one depends on the other.
 Findings CheckAll(const Observations& seen);
 
 /// @param has_colours  grades in colour, for a terminal

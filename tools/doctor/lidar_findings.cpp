@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -92,12 +93,21 @@ Finding CheckSilentNetwork(const Observations& seen) {
 
 std::string ReturnMode(const LidarSeen& lidar) {
   if (lidar.num_returns == 2) return "dual return";
-  return lidar.return_kind == lidar_scan_t::RETURN_LAST ? "last return" : "strongest return";
+  switch (lidar.return_kind) {
+    case lidar_scan_t::RETURN_LAST:
+      return "last return";
+    case lidar_scan_t::RETURN_FIRST:
+      return "first return";
+    case lidar_scan_t::RETURN_SECOND:
+      return "second return";
+    default:
+      return "strongest return";
+  }
 }
 
 Finding CheckPackets(const Observations& seen) {
   const auto& lidar = seen.lidar;
-  if (lidar.num_packets == 0 || ToSeconds(seen.end - lidar.heard_last) > kLidarSilenceS) {
+  if (lidar.num_packets == 0 || (!lidar.is_capture && ToSeconds(seen.end - lidar.heard_last) > kLidarSilenceS)) {
     return Fault(kLidarSubject, lidar.complaint.empty() ? "no lidar packets" : lidar.complaint, kLidarCure);
   }
   if (lidar.model.empty()) {
@@ -108,9 +118,10 @@ Finding CheckPackets(const Observations& seen) {
   const double span_s = ToSeconds(lidar.last - lidar.first);
   const double rate_hz = span_s > 0.0 ? static_cast<double>(lidar.num_packets - 1) / span_s : 0.0;
   const double period_s = ToSeconds(lidar.num_returns == 2 ? vlp16::format::kPacketPeriodDual : vlp16::format::kPacketPeriodSingle);
+  const std::string expected = seen.config.lidar->other ? "" : " (" + Fixed(1.0 / period_s, 0) + " expected)";
   const double rpm = lidar.last_clock ? lidar.last_clock->rotation_rpm : std::nan("");
-  const std::string words = lidar.model + ", " + ReturnMode(lidar) + ", " + Fixed(rate_hz, 0) + " packets/s (" + Fixed(1.0 / period_s, 0) +
-                            " expected), " + (std::isfinite(rpm) ? Fixed(rpm, 0) + " rpm" : "rotation not known");
+  const std::string words = lidar.model + ", " + ReturnMode(lidar) + ", " + Fixed(rate_hz, 0) + " packets/s" + expected + ", " +
+                            (std::isfinite(rpm) ? Fixed(rpm, 0) + " rpm" : "rotation not known");
   if (lidar.first_clock && lidar.last_clock) {
     const auto num_lost = lidar.last_clock->num_lost_packets - lidar.first_clock->num_lost_packets;
     const auto num_came = lidar.last_clock->num_packets - lidar.first_clock->num_packets;
@@ -156,29 +167,77 @@ Finding CheckSensorClock(const lidar_clock_t& clock) {
   return Ok(kClockSubject, locked + "; this computer's clock is " + Fixed(1e3 * clock.offset_s, 1) + " ms ahead" + source);
 }
 
+// A clock that stamps with the whole time: nothing but this computer's clock, or that of the capture, says whether it is right.
+Finding CheckWholeClock(const Observations& seen, std::chrono::microseconds host_minus_stamp, Utime stamp, const std::string& used) {
+  const std::string whose = seen.lidar.is_capture ? "the capture's" : "this computer's";
+  const auto difference = lidar::ClockDifferenceText(host_minus_stamp, stamp, whose);
+  if (difference.empty())
+    return Ok(kClockSubject, "the lidar's clock agrees with " + whose + " to " + Fixed(1e3 * ToSeconds(host_minus_stamp), 1) + " ms" + used);
+  return Warning(
+      kClockSubject, "the lidar's clock is not synchronised to UTC: " + difference + used,
+      "nothing need be done where time_source is TIME_AUTO: this computer's clock stamps the scans, to some ms; else PTP with a master that "
+      "sends UTC, or PPS with GPRMC");
+}
+
+std::optional<Finding> CheckWholeClock(const Observations& seen) {
+  const auto& config = *seen.config.lidar;
+  if (const auto& clock = seen.lidar.last_clock; clock && std::isfinite(clock->offset_s)) {
+    const auto apart = std::chrono::microseconds(std::llround(clock->offset_s * 1e6));
+    const bool is_sensors = clock->time_source == lidar_clock_t::TIME_SENSOR;
+    const Utime stamp = Utime(std::chrono::microseconds(clock->utime_us)) - (is_sensors ? std::chrono::microseconds(0) : apart);
+    return CheckWholeClock(seen, apart, stamp, is_sensors ? "; scans have the sensor's time" : "; scans have this computer's time");
+  }
+  for (const auto& speaker : seen.lidar.speakers) {
+    if (speaker.host_minus_stamp && speaker.data_port == config.data_port)
+      return CheckWholeClock(seen, *speaker.host_minus_stamp, *speaker.stamp, "");
+  }
+  return std::nullopt;
+}
+
+// Whether packets of the config's model are stamped with the whole time.
+bool HasWholeClock(const Observations& seen) {
+  const auto& config = seen.config.lidar;
+  return config && config->other && !lidar::RowOf(config->other->model).has_position_packets;
+}
+
+// Without a config for them.
+Findings CheckClocksOfSpeakers(const Observations& seen) {
+  Findings findings;
+  for (const auto& speaker : seen.lidar.speakers) {
+    if (speaker.host_minus_stamp) findings.push_back(CheckWholeClock(seen, *speaker.host_minus_stamp, *speaker.stamp, ""));
+  }
+  return findings;
+}
+
 }  // namespace
 
 Findings CheckLidar(const Observations& seen) {
   if (!seen.config.lidar) return {Warning(kLidarSubject, "not checked: lidar.txtpb is wrong", "correct it first")};
   const auto& lidar = seen.lidar;
   const auto kind = seen.config.lidar->sources.kind;
-  const bool is_sensor = kind == lidar::Sources::Kind::kUdp || kind == lidar::Sources::Kind::kInterface;
+  const bool is_sensor = lidar.is_capture || kind == lidar::Sources::Kind::kUdp || kind == lidar::Sources::Kind::kInterface;
   if (!is_sensor) return {Warning(kLidarSubject, "lidar.txtpb names captures or a log: no sensor is checked", "source: UDP for a sensor")};
   if (!lidar.fault.empty()) {
     return {Fault(kLidarSubject, lidar.fault, "correct what the line names; if lookout-lidar is running on another bus, end it")};
   }
   Findings findings{CheckPackets(seen)};
   for (const auto& [sender, num_datagrams] : lidar.num_by_sender) findings.push_back(CheckSender(seen, sender, num_datagrams));
-  if (lidar.num_packets == 0 && lidar.num_by_sender.empty()) findings.push_back(CheckSilentNetwork(seen));
+  if (lidar.num_packets == 0 && lidar.num_by_sender.empty() && !lidar.is_capture) findings.push_back(CheckSilentNetwork(seen));
   return findings;
 }
 
 Findings CheckClocks(const Observations& seen) {
   Findings findings;
-  if (const auto& clock = seen.lidar.last_clock) {
+  if (seen.lidar.is_capture && seen.lidar.model.empty()) return CheckClocksOfSpeakers(seen);
+  if (HasWholeClock(seen)) {
+    const auto finding = CheckWholeClock(seen);
+    if (finding) findings.push_back(*finding);
+    if (finding && finding->grade == Grade::kOk) return findings;
+  } else if (const auto& clock = seen.lidar.last_clock) {
     findings.push_back(CheckSensorClock(*clock));
     if (clock->state == lidar_clock_t::STATE_LOCKED) return findings;  // which has measured this computer's
   }
+  if (seen.lidar.is_capture) return findings;
   findings.push_back(seen.is_host_clock_set
                          ? Ok(kClockSubject, "this computer's clock is steered (NTP or PPS)")
                          : Warning(kClockSubject, "nothing steers this computer's clock, which stamps data without a time of their own",

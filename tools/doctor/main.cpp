@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/config/boat_folder.hpp"
@@ -15,6 +16,7 @@
 #include "common/runtime/run_info.hpp"
 #include "common/runtime/version.hpp"
 #include "services/tracker/params_text.hpp"
+#include "tools/doctor/cable.hpp"
 #include "tools/doctor/findings.hpp"
 #include "tools/doctor/machine.hpp"
 #include "tools/doctor/watch.hpp"
@@ -31,22 +33,26 @@ struct Options {
   bool check_only = false;
   std::string lcm_url;
   int seconds = kUsualSeconds;
+  std::vector<std::filesystem::path> captures;
 };
 
 Options ParseOptions(int argc, char** argv) {
   Options options;
   CLI::App app("Checks whether a boat is ready to cast off: config, bus, lidar, clocks, GNSS, heading, mounting, disk, processes.", "lookout-doctor");
-  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")
-      ->required()
-      ->check(CLI::ExistingDirectory)
-      ->check(lookout::config::BoatFolderFault);
+  auto* const config = app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files; not needed with --in")
+                           ->check(CLI::ExistingDirectory)
+                           ->check(lookout::config::BoatFolderFault);
   app.add_option("--seconds", options.seconds, "listen for so long")->check(CLI::Range(kMinSeconds, kMaxSeconds))->capture_default_str();
   app.add_flag("--check", options.check_only, "check the config of every process, print the values in force or every fault, exit");
   app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");
+  app.add_option("--in", options.captures, "capture: which lidars speak in it, and what the config makes of them; nothing else is checked (several)")
+      ->check(CLI::ExistingFile);
   app.set_version_flag("--version", "lookout-doctor " + lookout::runtime::Version());
   app.footer("Exit code: 0 no fault; 1 a fault; 2 wrong command line, or with --check a wrong config.");
   try {
     app.parse(argc, argv);
+    if (config->count() == 0 && options.captures.empty()) throw CLI::RequiredError("--config");
+    if (options.check_only && config->count() == 0) throw CLI::RequiredError("--check needs --config");
   } catch (const CLI::ParseError& error) {
     // --help and --version come here too, with code 0.
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : 2);
@@ -58,6 +64,11 @@ Options ParseOptions(int argc, char** argv) {
 lookout::doctor::Observations Observe(const Options& options) {
   namespace doctor = lookout::doctor;
   doctor::Observations seen;
+  if (!options.captures.empty()) {
+    if (!options.config_folder.empty()) seen.config = doctor::ReadConfig(options.config_folder);
+    doctor::ReadCaptures(options.captures, seen);
+    return seen;
+  }
   seen.config = doctor::ReadConfig(options.config_folder);
   seen.bus = doctor::ReadBus(options.lcm_url);
   seen.buffers = doctor::ReadBuffers(seen.config);
@@ -87,7 +98,8 @@ int main(int argc, char** argv) {
                 << lookout::tracker::ZoneRemarksAsComments(lookout::tracker::LoadParams(options.config_folder));
       return;
     }
-    const auto findings = lookout::doctor::CheckAll(Observe(options));
+    const auto seen = Observe(options);
+    const auto findings = options.captures.empty() ? lookout::doctor::CheckAll(seen) : lookout::doctor::CheckCaptures(seen);
     // no-color.org
     const bool has_colours = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
     std::cout << lookout::doctor::ToReport(findings, has_colours);

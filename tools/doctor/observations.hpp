@@ -1,6 +1,7 @@
 // Observations, in plain values, so that each check can be tested without a boat.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -19,6 +20,7 @@
 #include "lookout/lidar_clock_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/lidar/params.hpp"
+#include "services/lidar/survey.hpp"
 #include "services/navigator/params.hpp"
 #include "services/page/params.hpp"
 #include "services/tracker/params.hpp"
@@ -78,6 +80,12 @@ enum class Via {
   kItself    // its process was not heard: the doctor opened the sources of the config itself
 };
 
+/// Shots into one degree of azimuth of the lidar's frame.
+struct AzimuthSeen {
+  std::int64_t num_shots = 0;
+  std::int64_t num_own = 0;  // of them, returns within own_vessel
+};
+
 struct LidarSeen {
   Via via = Via::kNothing;
   std::string fault;      // why the ports could not be opened
@@ -93,6 +101,10 @@ struct LidarSeen {
   int return_kind = 0;  // lidar_scan_t::RETURN_..., of the first
   std::optional<lidar_clock_t> first_clock;
   std::optional<lidar_clock_t> last_clock;
+  bool is_capture = false;                  // read from captures, with their times
+  std::vector<lidar::Speaker> speakers;     // all lidars that were heard, by the config or not
+  std::int64_t num_fragments_lost = 0;      // datagrams that could not be put together from IP fragments
+  std::array<AzimuthSeen, 360> azimuths{};  // by whole degree, of all scans
 };
 
 struct NavigationSeen {

@@ -13,6 +13,7 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/memory_bus.hpp"
 #include "common/bus/services.hpp"
+#include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
 #include "common/io/source.hpp"
 #include "common/io/udp_receiver.hpp"
@@ -26,6 +27,7 @@
 #include "services/navigator/sources.hpp"
 #include "services/tracker/alert_text.hpp"
 #include "services/tracker/wire.hpp"
+#include "tools/doctor/cable.hpp"
 
 namespace lookout::doctor {
 
@@ -61,8 +63,8 @@ class OwnLidar {
     }
   }
 
-  /// Takes waiting datagrams. @param seen  gets senders and complaint
-  void Poll(Utime now, LidarSeen& seen) {
+  /// Takes waiting datagrams. @param seen  gets senders and complaint. @param survey  hears each
+  void Poll(Utime now, LidarSeen& seen, lidar::Survey& survey) {
     const auto& allowed = params_.sources.allowed_source_addresses;
     const bool is_udp = params_.sources.kind == lidar::Sources::Kind::kUdp;
     for (auto& source : sources_) {
@@ -72,6 +74,7 @@ class OwnLidar {
         if (!datagram) break;
         const auto& sender = datagram->source_address;
         if (is_udp && datagram->port == params_.data_port) ++seen.num_by_sender[sender];
+        survey.Add(datagram->host_time, sender, datagram->destination_address, datagram->port, datagram->bytes);
         if (is_udp && !allowed.empty() && std::ranges::find(allowed, sender) == allowed.end()) continue;
         service_.OnDatagram(datagram->host_time, datagram->port, datagram->bytes, {sender, datagram->source_port});
       }
@@ -142,6 +145,8 @@ class Watcher {
     ListenUntil(std::max(start + duration, SteadyClock::now() + duration / 2));
     if (navigator_) navigator_->Finish(seen_.navigation);
     ForgivePortsOfProcesses(seen_);
+    seen_.lidar.speakers = survey_.Speakers();
+    seen_.lidar.num_fragments_lost = std::max<std::int64_t>(0, NumReassemblyFailures() - num_reassembly_failures_);
     seen_.end = runtime::HostNow();
     seen_.watched_s = ToSeconds(SteadyClock::now() - start);
     if (seen_.lidar.via == Via::kBus && seen_.lidar.num_packets > 0) {
@@ -179,6 +184,9 @@ class Watcher {
         seen_.lidar.fault = error.what();
       }
     }
+    std::vector<int> ports;
+    if (config.lidar) ports = {config.lidar->data_port, config.lidar->position_port};
+    cable_.emplace(ports);
     if (seen_.processes.contains("navigator")) {
       seen_.navigation.via = Via::kBus;
     } else if (config.navigation && !config.navigation->reads_nav_raw) {
@@ -190,7 +198,8 @@ class Watcher {
   void ListenUntil(SteadyClock::time_point end) {
     while (SteadyClock::now() < end) {
       const auto now = runtime::HostNow();
-      if (lidar_) lidar_->Poll(now, seen_.lidar);
+      if (lidar_) lidar_->Poll(now, seen_.lidar, survey_);
+      if (cable_) cable_->Poll(now, survey_);
       if (navigator_) navigator_->Poll(now, seen_.navigation);
       while (memory_.HandleOnce()) {
       }
@@ -213,6 +222,9 @@ class Watcher {
   std::optional<bus::LcmBus> lcm_;
   std::optional<OwnLidar> lidar_;
   std::optional<OwnNavigator> navigator_;
+  std::optional<Cable> cable_;
+  lidar::Survey survey_;
+  std::int64_t num_reassembly_failures_ = NumReassemblyFailures();
 };
 
 }  // namespace
@@ -287,9 +299,33 @@ void Notes::OnScan(const lidar_scan_t& message) {
   seen_.lidar.model = message.model;
   seen_.lidar.num_returns = message.num_returns;
   if (!message.return_kind.empty()) seen_.lidar.return_kind = message.return_kind.front();
-  if (!seen_.config.tracker || messages::FaultOf(message, bus::kMaxMessageBytes)) return;
+  if (messages::FaultOf(message, bus::kMaxMessageBytes)) return;
+  CountAzimuths(message);
+  if (!seen_.config.tracker) return;
   if (message.num_parts == 1 && scan_parts_.is_empty()) return LookAtZone({&message, 1});
   LookAtZone(scan_parts_.Add(message).whole);
+}
+
+void Notes::CountAzimuths(const lidar_scan_t& message) {
+  const auto& boat = seen_.config.boat;
+  const double own_radius_m =
+      boat ? (boat->own_vessel_box_m.diagonal().norm() + (boat->own_vessel_box_m.center() - boat->T_vessel_lidar.translation()).norm()) : 0.0;
+  const auto num_rings = static_cast<std::size_t>(message.num_rings);
+  const auto num_returns = static_cast<std::size_t>(message.num_returns);
+  for (std::size_t column = 0; column < static_cast<std::size_t>(message.num_columns); ++column) {
+    for (std::size_t ring = 0; ring < num_rings; ++ring) {
+      const double azimuth_rad = WrapTo2Pi(double{message.azimuth_rad[column]} + message.azimuth_offset_rad[ring]);
+      auto& azimuth = seen_.lidar.azimuths.at(static_cast<std::size_t>(RadToDeg(azimuth_rad)) % seen_.lidar.azimuths.size());
+      ++azimuth.num_shots;
+      const auto range = static_cast<std::uint16_t>(message.range[(column * num_rings + ring) * num_returns]);
+      const double range_m = range * message.range_unit_m;
+      if (range == 0 || range_m > own_radius_m) continue;
+      const double level_m = range_m * std::cos(message.elevation_rad[ring]);
+      const Eigen::Vector3d p_lidar_m(level_m * std::cos(azimuth_rad), -level_m * std::sin(azimuth_rad),
+                                      range_m * std::sin(message.elevation_rad[ring]) + message.origin_height_m[ring]);
+      azimuth.num_own += boat->own_vessel_box_m.contains(boat->T_vessel_lidar * p_lidar_m) ? 1 : 0;
+    }
+  }
 }
 
 // Scans that lack a part say nothing here.

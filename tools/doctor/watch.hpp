@@ -36,6 +36,7 @@ class Notes {
   void OnPackets(const lidar_packets_t& message, Via via);
   void OnScan(const lidar_scan_t& message);
   void LookAtZone(std::span<const lidar_scan_t> parts);
+  void CountAzimuths(const lidar_scan_t& message);
   void OnFix(const gnss_fix_t& message);
   void OnHealth(const health_t& message);
 

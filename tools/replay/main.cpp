@@ -126,7 +126,10 @@ lookout::run_info_t RunInfoOf(const Options& options, const lookout::replay::Ins
 void PrintSummary(const lookout::replay::InputSummary& summary, const Chain& chain, std::int64_t num_scans) {
   for (const auto& [channel, count] : summary.left) spdlog::info("not read: {} {}", channel, count);
   for (const auto& [reason, count] : summary.refused) spdlog::warn("{}: {}", reason, count);
-  for (const auto& [name, count] : chain.Counters()) spdlog::info("{}: {}", name, count);
+  for (const auto& [name, count] : chain.Counters()) {
+    spdlog::info("{}: {}", name, count);
+    if (name == "lidar.beams_of_log") spdlog::warn("the lidar's beams in the input are not those of the config: those of the input are used");
+  }
   for (const auto& [channel, count] : chain.Gaps()) {
     spdlog::warn("{}: {} messages are missing in the input; what follows a gap need not equal the live run", channel, count);
   }

@@ -14,12 +14,17 @@ namespace {
 
 bool Holds(const std::vector<std::string>& names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
 
+bool IsOfSecondLidar(const bus::Channel* channel) { return channel != nullptr && bus::IsOfSecondLidar(*channel); }
+
 bool IsFromSeveral(const bus::Channel* channel) { return channel != nullptr && bus::HasSeveralPublishers(*channel); }
 
-// Without what several may send, and nobody must.
+// Channels that are read wherever they are, and that nothing needs.
+bool IsOptional(const bus::Channel* channel) { return IsFromSeveral(channel) || IsOfSecondLidar(channel); }
+
+// Without what several may send, or a second lidar, and nobody must.
 std::vector<const bus::Channel*> Inputs(const bus::ServiceRow& service) {
   std::vector<const bus::Channel*> inputs(service.inputs.begin(), service.inputs.end());
-  std::erase_if(inputs, [](const auto* channel) { return channel == nullptr || IsFromSeveral(channel); });
+  std::erase_if(inputs, [](const auto* channel) { return channel == nullptr || IsOptional(channel); });
   return inputs;
 }
 
@@ -96,9 +101,13 @@ void AddUnmet(const Request& request, const ChannelSet& present, const ServiceRo
   std::vector<const bus::Channel*> unmet;
   for (const auto& service : services) {
     if (!plan.Runs(service.name)) continue;
-    std::ranges::copy_if(service.inputs, std::back_inserter(unmet), IsFromSeveral);
+    std::ranges::copy_if(service.inputs, std::back_inserter(unmet),
+                         [&](const bus::Channel* input) { return IsFromSeveral(input) || (IsOfSecondLidar(input) && !plan.Publishes(*input)); });
     if (ReadsRaw(service, request, present)) {
       unmet.push_back(bus::RawOutput(service));
+      for (const auto& channel : bus::kChannels) {
+        if (channel.is_raw && bus::IsOfSecondLidar(channel) && bus::Publishes(service, channel)) unmet.push_back(&channel);
+      }
       continue;
     }
     for (const auto* input : Inputs(service)) {
@@ -168,7 +177,7 @@ ChannelSet Candidates(const Request& request, const ServiceRows& services) {
   const auto all = FromNames(services);
   AddUnmet(request, {all.begin(), all.end()}, services, plan);
   ChannelSet candidates(plan.read.begin(), plan.read.end());
-  std::erase_if(candidates, [](const auto& name) { return IsFromSeveral(bus::FindChannel(name)); });
+  std::erase_if(candidates, [](const auto& name) { return IsOptional(bus::FindChannel(name)); });
   return candidates;
 }
 
@@ -187,7 +196,7 @@ Plan MakeLogPlan(const Request& request, const ChannelSet& present, const Servic
         fmt::format("the input holds none of {}: nothing can be computed again", fmt::join(Candidates(request, services), ", ")));
   }
   for (const auto& name : plan.read) {
-    if (!present.contains(name) && !IsFromSeveral(bus::FindChannel(name))) plan.absent.push_back(name);
+    if (!present.contains(name) && !IsOptional(bus::FindChannel(name))) plan.absent.push_back(name);
   }
   return plan;
 }
@@ -208,8 +217,10 @@ Plan MakeCapturePlan(const Request& request, const ServiceRows& services) {
 bool IsWhole(const Plan& plan) { return plan.services.size() == ReplayedServices().size(); }
 
 std::string InWords(const Plan& plan) {
+  auto named = plan.read;
+  std::erase_if(named, [](const auto& name) { return name == bus::kLidarBeams.name || IsOfSecondLidar(bus::FindChannel(name)); });
   return fmt::format("ran: {}\nread: {}\n", fmt::join(plan.services, ", "),
-                     plan.read.empty() ? "datagrams" : fmt::format("{}", fmt::join(plan.read, ", ")));
+                     plan.read.empty() ? "datagrams" : fmt::format("{}", fmt::join(named, ", ")));
 }
 
 }  // namespace lookout::replay

@@ -76,7 +76,8 @@ Plan MakeCapturePlan(const Request& request, const ServiceRows& services = Repla
 /// Whether all services run.
 bool IsWhole(const Plan& plan);
 
-/// The running services and the channels that are read, for RUN_INFO: two lines.
+/// The running services and the channels that are read, for RUN_INFO: two lines. LIDAR_BEAMS, which go with LIDAR_PACKETS, and channels of a second
+/// lidar are not named: they are read where they are.
 std::string InWords(const Plan& plan);
 
 }  // namespace lookout::replay

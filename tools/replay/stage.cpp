@@ -1,5 +1,8 @@
 #include "tools/replay/stage.hpp"
 
+#include <list>
+#include <map>
+
 #include "services/georeferencer/params.hpp"
 #include "services/georeferencer/service.hpp"
 #include "services/lidar/params.hpp"
@@ -20,28 +23,55 @@ namespace fs = std::filesystem;
 
 class LidarStage final : public Stage {
  public:
-  LidarStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& input)
-      : params_(Load(config_folder, input.reads_raw ? lidar::Input::kLog : lidar::Input::kOutside)), service_(bus, params_) {}
-
-  void AdvanceTo(Utime time) override { service_.AdvanceTo(time); }
-  bool OnDatagram(const Datagram& datagram) override {
-    if (datagram.port != params_.data_port && datagram.port != params_.position_port) return false;
-    if (datagram.port == params_.data_port) ++num_measured_;
-    service_.OnDatagram(datagram.host_time, datagram.port, datagram.payload, datagram.sender);
-    return true;
+  LidarStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& input) {
+    for (const int number : {1, 2}) {
+      if (number == 2 && !lidar::HasSecond(config_folder)) continue;
+      auto params = lidar::LoadParams(config_folder, number);
+      params.input = input.reads_raw ? lidar::Input::kLog : lidar::Input::kOutside;
+      lidars_.emplace_back(bus, params);
+    }
   }
-  void Finish(Utime time) override { service_.Finish(time); }
-  HealthReport Report() const override { return service_.Report(); }
+
+  void AdvanceTo(Utime time) override {
+    for (auto& lidar : lidars_) lidar.service.AdvanceTo(time);
+  }
+  bool OnDatagram(const Datagram& datagram) override {
+    bool is_taken = false;
+    for (auto& lidar : lidars_) {
+      if (datagram.port != lidar.params.data_port && datagram.port != lidar.params.position_port) continue;
+      is_taken = true;
+      if (datagram.port == lidar.params.data_port) ++num_measured_;
+      lidar.service.OnDatagram(datagram.host_time, datagram.port, datagram.payload, datagram.sender);
+    }
+    return is_taken;
+  }
+  void Finish(Utime time) override {
+    for (auto& lidar : lidars_) lidar.service.Finish(time);
+  }
+  HealthReport Report() const override {
+    auto report = lidars_.front().service.Report();
+    if (lidars_.size() == 1) return report;
+    std::map<std::string_view, std::int64_t> of_second;
+    const auto second = lidars_.back().service.Report();
+    for (const auto& counter : second.counters) of_second[counter.name] += counter.count;
+    for (auto& counter : report.counters) {
+      counter.count += of_second[counter.name];
+      of_second.erase(counter.name);
+    }
+    for (const auto& [name, count] : of_second) report.counters.push_back({name, count});
+    report.reason += (report.reason.empty() || second.reason.empty() ? "" : "; ") + second.reason;
+    return report;
+  }
 
  private:
-  static lidar::Params Load(const fs::path& config_folder, lidar::Input input) {
-    auto params = lidar::LoadParams(config_folder);
-    params.input = input;
-    return params;
-  }
+  struct Lidar {
+    Lidar(bus::Bus& bus, const lidar::Params& of_config) : params(of_config), service(bus, params) {}
 
-  lidar::Params params_;
-  lidar::Service service_;
+    lidar::Params params;
+    lidar::Service service;
+  };
+
+  std::list<Lidar> lidars_;  // one or two
 };
 
 // A service that computes its output from messages alone, and holds nothing at its end.
@@ -138,8 +168,13 @@ std::unique_ptr<Stage> Make(bus::Bus& bus, const fs::path& config_folder, const 
 
 const std::vector<StageFactory>& StageFactories() {
   static const std::vector<StageFactory> kFactories{
-      {"lidar", [](const fs::path& folder) { lidar::LoadParams(folder); }, Make<LidarStage>},
-      {"segmenter", [](const fs::path& folder) { segmenter::LoadParams(folder); }, Make<PlainStage<segmenter::Service, segmenter::LoadParams>>},
+      {"lidar",
+       [](const fs::path& folder) {
+         lidar::LoadParams(folder);
+         if (lidar::HasSecond(folder)) lidar::LoadParams(folder, 2);
+       },
+       Make<LidarStage>},
+      {"segmenter", [](const fs::path& folder) { segmenter::LoadParams(folder); }, Make<PlainStage<segmenter::Service, segmenter::LoadLanes>>},
       {"navigator", [](const fs::path& folder) { navigator::LoadParams(folder); }, Make<NavigatorStage>},
       {"georeferencer", [](const fs::path& folder) { georeferencer::LoadParams(folder); }, Make<GeoreferencerStage>},
       {"tracker", [](const fs::path& folder) { tracker::LoadParams(folder); }, Make<TrackerStage>}};

@@ -46,11 +46,19 @@ std::string ChannelsHeader(int width) {
   return Fitting({Left("channel", 13), Right("Hz", 7), Right("kB/s", 7), Right("lost", 5), Right("bad", 4), Right("age", 5)}, width);
 }
 
+// Those of a second lidar are told from the first's by their end.
+std::string NameOfChannel(const std::string& name) {
+  constexpr std::string_view kOfSecond = "_2";
+  constexpr int kWidth = 13;
+  const bool is_cut = name.size() > kWidth && name.ends_with(kOfSecond);
+  return is_cut ? Left(Printable(name), kWidth - static_cast<int>(kOfSecond.size())) + std::string(kOfSecond) : Left(Printable(name), kWidth);
+}
+
 std::vector<Span> ChannelRows(const Board& board, TimePoint now, int width) {
   std::vector<Span> rows;
   for (const auto& channel : board.Channels(now)) {
     const bool is_faulty = channel.num_lost.value_or(0) > 0 || channel.num_bad > 0;
-    const std::vector<std::string> cells{Left(Printable(channel.name), 13),
+    const std::vector<std::string> cells{NameOfChannel(channel.name),
                                          Column(channel.rate ? Number(channel.rate->messages_hz, 6, 1) : Right("-", 6)),
                                          Column(channel.rate ? Number(channel.rate->bytes_per_s / 1000.0, 6, 1) : Right("-", 6)),
                                          Column(channel.num_lost ? Count(*channel.num_lost, 4) : Right("-", 4)),

@@ -12,8 +12,20 @@ constexpr std::array kObstacleCounts{"obstacles_ok", "obstacles_vessel_frame_onl
 
 }  // namespace
 
-Georeferencer::Georeferencer(const PlacementParams& placement, std::chrono::microseconds pose_timeout)
-    : placement_(placement), pose_timeout_(pose_timeout) {}
+Georeferencer::Georeferencer(const PlacementParams& placement, std::chrono::microseconds pose_timeout,
+                             const std::optional<Eigen::Isometry3d>& T_vessel_lidar_2)
+    : placement_(placement), pose_timeout_(pose_timeout) {
+  if (!T_vessel_lidar_2) return;
+  second_placement_ = placement;
+  second_placement_->T_vessel_lidar = *T_vessel_lidar_2;
+}
+
+std::vector<ObstaclePart> Georeferencer::AddSecond(const SegmentPart& part) {
+  std::vector<ObstaclePart> released;
+  second_.Add(part);
+  ReleaseReady(released);
+  return released;
+}
 
 std::vector<ObstaclePart> Georeferencer::AddSegments(SegmentPart part) {
   std::vector<ObstaclePart> released;
@@ -79,30 +91,69 @@ std::vector<ObstaclePart> Georeferencer::Finish() {
   return released;
 }
 
-bool Georeferencer::IsReady(const SegmentPart& part) const { return poses_.newest() != nullptr && poses_.newest()->time >= part.head.end_time; }
+bool Georeferencer::IsReady(const SegmentPart& part) const {
+  const auto* newest = poses_.newest();
+  return newest != nullptr && newest->time >= part.head.end_time && !(second_placement_ && second_.Holds(part.head.end_time, newest->time));
+}
 
 void Georeferencer::ReleaseReady(std::vector<ObstaclePart>& released) {
   while (!waiting_.empty() && IsReady(waiting_.front().part)) ReleaseFront(false, released);
 }
 
 void Georeferencer::ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& released) {
-  const SegmentPart& part = waiting_.front().part;
+  const SegmentPart part = std::move(waiting_.front().part);
+  waiting_.pop_front();
+  if (second_placement_ && part.head.part_index == 0) TakeSecond(part.head);
+  const bool is_furthered = further_.num_segments > 0 && further_.head.seq == part.head.seq && further_.head.time == part.head.time;
   ObstaclePart& placed = released.emplace_back();
   placed.head = part.head;
-  placed.datum = poses_.DatumAt(part.head.end_time);
-  for (const auto& segment : part.segments) {
-    if (segment.hull.size() > kMaxFootprintVertices) ++counts_["footprints_thinned"];
-    if (segment.waterline.size() > kMaxWaterlineVertices) ++counts_["waterlines_thinned"];
-    const auto& obstacle = placed.obstacles.emplace_back(PlaceSegment(segment, poses_, placed.datum, has_timed_out, placement_));
-    counts_.Add(kObstacleCounts[static_cast<std::size_t>(obstacle.status)]);
+  if (is_furthered) {
+    placed.head.num_parts += static_cast<std::int32_t>(further_.parts.size());
+    placed.head.num_scan_segments += further_.num_segments;
   }
+  const ScanHead head = placed.head;
+  placed.datum = poses_.DatumAt(part.head.end_time);
+  for (const auto& segment : part.segments) Place(segment, has_timed_out, placement_, placed);
   ++counts_["parts_released"];
-  waiting_.pop_front();
+  if (is_furthered && part.head.part_index == part.head.num_parts - 1) ReleaseSecond(head, has_timed_out, released);
+}
+
+void Georeferencer::Place(const Segment& segment, bool has_timed_out, const PlacementParams& placement, ObstaclePart& placed) {
+  if (segment.hull.size() > kMaxFootprintVertices) ++counts_["footprints_thinned"];
+  if (segment.waterline.size() > kMaxWaterlineVertices) ++counts_["waterlines_thinned"];
+  const auto& obstacle = placed.obstacles.emplace_back(PlaceSegment(segment, poses_, placed.datum, has_timed_out, placement));
+  counts_.Add(kObstacleCounts[static_cast<std::size_t>(obstacle.status)]);
+}
+
+void Georeferencer::TakeSecond(const ScanHead& head) {
+  further_ = {.head = head, .parts = {}, .num_segments = 0};
+  for (auto& segment : second_.Take(head.time, head.end_time)) {
+    // So few fit into one message, however large their outlines are.
+    constexpr std::size_t kSegmentsOfPart = 18;
+    segment.id = kSecondLidarId + ++further_.num_segments;
+    if (further_.parts.empty() || further_.parts.back().size() >= kSegmentsOfPart) further_.parts.emplace_back();
+    further_.parts.back().push_back(std::move(segment));
+  }
+}
+
+// @param head  of the scan, with the counts of both
+void Georeferencer::ReleaseSecond(const ScanHead& head, bool has_timed_out, std::vector<ObstaclePart>& released) {
+  for (const auto& segments : further_.parts) {
+    ObstaclePart placed;
+    placed.head = head;
+    placed.head.part_index = released.back().head.part_index + 1;
+    placed.datum = released.back().datum;
+    for (const auto& segment : segments) Place(segment, has_timed_out, *second_placement_, placed);
+    counts_["obstacles_of_second"] += static_cast<std::int64_t>(segments.size());
+    released.push_back(std::move(placed));
+  }
+  further_ = {};
 }
 
 std::vector<Counter> Georeferencer::counters() const {
   auto counts = counts_;
   counts["parts_waiting"] = num_waiting();
+  counts["segments_of_second_dropped"] = second_.num_dropped();
   std::vector<Counter> counters;
   counts.AppendTo(counters);
   return counters;

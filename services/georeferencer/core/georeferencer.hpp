@@ -13,6 +13,7 @@
 #include "common/core/pose.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
 #include "services/georeferencer/core/placement.hpp"
+#include "services/georeferencer/core/second_lidar.hpp"
 
 namespace lookout::georeferencer {
 
@@ -24,11 +25,18 @@ class Georeferencer {
   /// Messages that may wait for POSE: at 10 scans a second 100 s of them.
   static constexpr std::size_t kMaxWaiting = 1000;
 
-  Georeferencer(const PlacementParams& placement, std::chrono::microseconds pose_timeout);
+  /// Obstacles of the second lidar have numbers above this, in the order in which they go out: no segment of the first has.
+  static constexpr std::int32_t kSecondLidarId = 32768;
+
+  /// @param T_vessel_lidar_2  nullopt: there is one lidar
+  Georeferencer(const PlacementParams& placement, std::chrono::microseconds pose_timeout,
+                const std::optional<Eigen::Isometry3d>& T_vessel_lidar_2 = std::nullopt);
 
   /// Each of these returns the segments that can be released now, in the order in which they came.
   std::vector<ObstaclePart> AddSegments(SegmentPart part);
   std::vector<ObstaclePart> AddPose(const Pose& pose);
+  /// Of the second lidar: they go out as further parts of the scan of the first during which they were seen.
+  std::vector<ObstaclePart> AddSecond(const SegmentPart& part);
 
   /// Live only. Segments that have waited for longer than the time-out by the host's clock are released, and all of them while POSE has not come for
   /// twice that long; a part, or a pose, has arrived at the host time of the call before it came.
@@ -48,15 +56,29 @@ class Georeferencer {
     SegmentPart part;
     std::optional<Utime> arrival;  // host time, where there is one
   };
-  static constexpr auto kCountNames = std::to_array<std::string_view>(
-      {"parts_released", "parts_timed_out", "parts_overflowed", "parts_flushed", "parts_waiting", "poses_taken", "poses_duplicate", "pose_restarts",
-       "obstacles_ok", "obstacles_vessel_frame_only", "obstacles_pose_timeout", "footprints_thinned", "waterlines_thinned"});
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"parts_released", "parts_timed_out", "parts_overflowed", "parts_flushed", "parts_waiting", "poses_taken",
+                                       "poses_duplicate", "pose_restarts", "obstacles_ok", "obstacles_vessel_frame_only", "obstacles_pose_timeout",
+                                       "footprints_thinned", "waterlines_thinned", "obstacles_of_second", "segments_of_second_dropped"});
 
   bool IsReady(const SegmentPart& part) const;
   void ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& released);
+  void TakeSecond(const ScanHead& head);
+  void ReleaseSecond(const ScanHead& head, bool has_timed_out, std::vector<ObstaclePart>& released);
+  void Place(const Segment& segment, bool has_timed_out, const PlacementParams& placement, ObstaclePart& placed);
   void ReleaseReady(std::vector<ObstaclePart>& released);
 
+  // Of the scan that is being released: the parts that the second lidar adds to it.
+  struct Further {
+    ScanHead head;  // of the scan's first part
+    std::vector<std::vector<Segment>> parts;
+    std::int32_t num_segments = 0;
+  };
+
   PlacementParams placement_;
+  std::optional<PlacementParams> second_placement_;
+  SecondLidar second_;
+  Further further_;
   std::chrono::microseconds pose_timeout_;
   PoseHistory poses_;
   std::deque<Waiting> waiting_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <pcap/pcap.h>
 #include <stdexcept>
+#include <utility>
 
 #include "common/io/file_kind.hpp"
 
@@ -112,10 +113,15 @@ std::optional<Datagram> CaptureReader::Next(std::int64_t max_frames) {
     std::optional<std::vector<std::uint8_t>> joined;
     if (frame.fragment && captured->time) {
       joined = fragments_.Add(*captured->time, *frame.fragment);
-      if (joined) frame = ParseDatagram(*joined, frame.fragment->source_address);
+      if (joined) frame = ParseDatagram(*joined, frame.fragment->source_address, frame.fragment->destination_address);
     }
     if (!frames_.Add(frame, captured->time)) continue;
-    return Datagram{*captured->time, frame.source_address, frame.source_port, frame.destination_port, {frame.payload.begin(), frame.payload.end()}};
+    return Datagram{.host_time = *captured->time,
+                    .source_address = std::move(frame.source_address),
+                    .source_port = frame.source_port,
+                    .destination_address = std::move(frame.destination_address),
+                    .destination_port = frame.destination_port,
+                    .payload = {frame.payload.begin(), frame.payload.end()}};
   }
   return std::nullopt;
 }

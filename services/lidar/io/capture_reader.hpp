@@ -22,6 +22,7 @@ struct Datagram {
   Utime host_time;             // stamp in the capture; some captures count from 0
   std::string source_address;  // numeric
   int source_port = 0;
+  std::string destination_address;  // numeric
   int destination_port = 0;
   std::vector<std::uint8_t> payload;
 };

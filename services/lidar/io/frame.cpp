@@ -40,14 +40,18 @@ FrameFault Short(bool is_cut) { return is_cut ? FrameFault::kTruncated : FrameFa
 
 // `bytes`: captured behind the IP header, with padding of the frame. `ip_size`: of the datagram, by the IP header: it tells only what is wrong with a
 // datagram that is not whole.
-Frame ParseUdp(Bytes bytes, std::size_t ip_size, bool is_cut, std::string source_address) {
+Frame ParseUdp(Bytes bytes, std::size_t ip_size, bool is_cut, std::string source_address, std::string destination_address) {
   const auto fault = ip_size > bytes.size() ? Short(is_cut) : FrameFault::kBadLength;
   if (bytes.size() < kUdpHeaderSizeBytes) return Refused(fault);
   const auto size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 4));
   if (size < kUdpHeaderSizeBytes) return Refused(FrameFault::kBadLength);
   if (size > bytes.size()) return Refused(fault);
-  return {FrameFault::kNone, std::move(source_address), ReadU16BigEndian(bytes, 0), ReadU16BigEndian(bytes, 2),
-          bytes.subspan(kUdpHeaderSizeBytes, size - kUdpHeaderSizeBytes)};
+  return {.fault = FrameFault::kNone,
+          .source_address = std::move(source_address),
+          .source_port = ReadU16BigEndian(bytes, 0),
+          .destination_port = ReadU16BigEndian(bytes, 2),
+          .payload = bytes.subspan(kUdpHeaderSizeBytes, size - kUdpHeaderSizeBytes),
+          .destination_address = std::move(destination_address)};
 }
 
 // `bytes`: captured behind the header of IP, or of the fragment; `size`: of the part, by that header.
@@ -82,7 +86,8 @@ Frame ParseIpv4(Bytes bytes, bool is_cut) {
   }
   if (bytes[9] != kProtocolUdp) return Refused(FrameFault::kNotUdp);
   if (header_size > bytes.size()) return Refused(Short(is_cut));
-  return ParseUdp(bytes.subspan(header_size), total_size - std::min(total_size, header_size), is_cut, AddressText(AF_INET, bytes.subspan(12, 4)));
+  return ParseUdp(bytes.subspan(header_size), total_size - std::min(total_size, header_size), is_cut, AddressText(AF_INET, bytes.subspan(12, 4)),
+                  AddressText(AF_INET, bytes.subspan(16, 4)));
 }
 
 // Behind the header of IPv6: next header, a spare byte, offset and flag, identification.
@@ -112,7 +117,8 @@ Frame ParseIpv6(Bytes bytes, bool is_cut) {
   if (std::ranges::find(kProtocolsIpv6Extension, protocol) != kProtocolsIpv6Extension.end()) return Refused(FrameFault::kIpv6Extension);
   if (protocol != kProtocolUdp) return Refused(FrameFault::kNotUdp);
   const auto payload_size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 4));
-  return ParseUdp(bytes.subspan(kIpv6HeaderSizeBytes), payload_size, is_cut, AddressText(AF_INET6, bytes.subspan(8, 16)));
+  return ParseUdp(bytes.subspan(kIpv6HeaderSizeBytes), payload_size, is_cut, AddressText(AF_INET6, bytes.subspan(8, 16)),
+                  AddressText(AF_INET6, bytes.subspan(24, 16)));
 }
 
 Frame ParseIp(Bytes bytes, bool is_cut) {
@@ -176,7 +182,9 @@ Frame ParseFrame(int link_type, Bytes bytes, bool is_cut) {
   }
 }
 
-Frame ParseDatagram(Bytes bytes, std::string source_address) { return ParseUdp(bytes, bytes.size(), false, std::move(source_address)); }
+Frame ParseDatagram(Bytes bytes, std::string source_address, std::string destination_address) {
+  return ParseUdp(bytes, bytes.size(), false, std::move(source_address), std::move(destination_address));
+}
 
 std::optional<Utime> UtimeOfStamp(std::int64_t seconds, std::int64_t nanoseconds) {
   constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;

@@ -40,6 +40,7 @@ struct Frame {
   int destination_port = 0;
   Bytes payload = {};                     // within the bytes of the frame
   std::optional<Fragment> fragment = {};  // with kFragment alone, where its bytes are whole
+  std::string destination_address = {};   // numeric
 };
 
 /// Handle of libpcap, for capturing or reading; closes itself.
@@ -58,7 +59,7 @@ bool IsLinkTypeUnderstood(int link_type);
 Frame ParseFrame(int link_type, Bytes bytes, bool is_cut);
 
 /// Of a UDP datagram with its header, as FragmentJoiner gives it. The payload of the frame is within `bytes`.
-Frame ParseDatagram(Bytes bytes, std::string source_address);
+Frame ParseDatagram(Bytes bytes, std::string source_address, std::string destination_address);
 
 /// Time of a frame, as libpcap reports it when nanoseconds were asked for.
 ///

@@ -145,7 +145,7 @@ std::optional<io::Source::Piece> LiveCapture::Check(Bytes bytes, bool is_cut, st
   if (frame.fragment && host_time) {
     if (auto joined = fragments_.Add(*host_time, *frame.fragment)) {
       joined_ = std::move(*joined);
-      frame = ParseDatagram(joined_, frame.fragment->source_address);
+      frame = ParseDatagram(joined_, frame.fragment->source_address, frame.fragment->destination_address);
     }
   }
   if (host_time) last_time_ = *host_time;
@@ -159,7 +159,8 @@ std::optional<io::Source::Piece> LiveCapture::Check(Bytes bytes, bool is_cut, st
                .bytes = frame.payload,
                .port = frame.destination_port,
                .source_address = std::move(frame.source_address),
-               .source_port = frame.source_port};
+               .source_port = frame.source_port,
+               .destination_address = std::move(frame.destination_address)};
 }
 
 std::optional<io::Source::Piece> LiveCapture::Receive(Utime) {

@@ -96,7 +96,7 @@ TEST_P(Fragments, AreADatagramAgainInAnyOrder) {
       joined = Add(PartOf(udp, 7, (is_backwards ? num_parts - 1 - i : i) * kPartBytes, kPartBytes));
     }
     ASSERT_TRUE(joined);
-    const auto frame = ParseDatagram(*joined, "10.0.0.1");
+    const auto frame = ParseDatagram(*joined, "10.0.0.1", "10.0.0.2");
     EXPECT_EQ(frame.fault, FrameFault::kNone);
     EXPECT_EQ(frame.destination_port, 7502);
     EXPECT_TRUE(std::ranges::equal(frame.payload, Counting(8448)));

@@ -1,6 +1,8 @@
 #include "services/lidar/core/driver/packet_order.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <tuple>
 #include <vector>
 
 #include "tests/unit/lidar/column_maker.hpp"
@@ -144,6 +146,39 @@ TEST(PacketOrder, TakesPacketsWithoutAGoodColumnAsSent) {
   EXPECT_EQ(num_given, 42U);
   EXPECT_EQ(order.counts().num_lost, 0);
   EXPECT_EQ(order.counts().num_restarts, 0);
+}
+
+// One without a good column that overtook its neighbour was forgotten, and then counted as lost.
+TEST(PacketOrder, TakesPacketsWithoutAGoodColumnThatComeOutOfOrder) {
+  for (const auto& [arrivals, empty, num_lost] :
+       std::vector<std::tuple<std::vector<int>, std::vector<int>, int>>{{{0, 1, 3, 2, 4, 5, 6}, {3}, 0},
+                                                                        {{0, 1, 4, 3, 2, 5, 6}, {3, 4}, 0},
+                                                                        {{0, 1, 3, 4, 5, 2, 6, 7}, {3}, 0},
+                                                                        {{0, 1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13}, {3}, 1},
+                                                                        {{0, 1, 3, 2, 2, 3, 4, 5}, {3}, 0}}) {
+    ColumnSensor sensor;
+    sensor.has_numbers = true;
+    std::vector<std::chrono::nanoseconds> times;
+    PacketOrder order([&](const PlacedColumns& placed) {
+      EXPECT_EQ(placed.time, placed.packet->stamp);
+      times.push_back(placed.time);
+    });
+    for (const int i : arrivals) {
+      auto packet = sensor.Make(i);
+      if (std::ranges::find(empty, i) != empty.end()) {
+        packet.columns.clear();
+        packet.range.clear();
+        packet.reflectivity.clear();
+        packet.stamp = 0ns;
+      }
+      order.Add(kOrderBegin + i * 2778us, packet, sensor.head);
+    }
+    order.Flush();
+    EXPECT_TRUE(std::ranges::is_sorted(times));
+    EXPECT_EQ(order.counts().num_lost, num_lost);
+    EXPECT_EQ(order.counts().num_restarts, 0);
+    EXPECT_EQ(order.counts().num_clock_steps, 0);
+  }
 }
 
 }  // namespace

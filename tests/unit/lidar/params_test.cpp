@@ -96,7 +96,7 @@ TEST_F(Vlp16Params, NameTheFieldAndTheLineThatTheUserWrote) {
 TEST_F(Vlp16Params, GiveTheirFaultsToWhoHasMoreToCheck) {
   std::ofstream(folder_ / "lidar.txtpb") << "source: UDP bind_address: '' cut_azimuth_deg: 0 data_port: 8308";
   std::vector<std::string> faults{"before"};
-  LoadParams(folder_, faults);
+  LoadParams(folder_, 1, faults);
   EXPECT_EQ(faults.size(), 3U);
 }
 

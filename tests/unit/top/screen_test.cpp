@@ -21,7 +21,7 @@ namespace {
 Board BusyBoard() {
   Board board(kStart);
   for (const auto& channel : bus::kChannels) {
-    const bool is_of_tracker = channel.publisher == "tracker" || channel.publisher == "several";
+    const bool is_of_tracker = channel.publisher == "tracker" || channel.publisher == "several" || bus::IsOfSecondLidar(channel);
     if (channel.name != "SIM_TRUTH" && channel.name != "HEALTH" && !is_of_tracker) board.Take(channel.name, {}, At(1.9));
   }
   pose_t pose = PoseAt(1'000'000, DegToRad(90.0));

@@ -107,6 +107,16 @@ void ColumnDecoder::OnPacket(const PlacedColumns& placed) {
 
 void ColumnDecoder::OnPositionPayload(Utime host_time, Bytes payload) {
   ++totals_.num_positions;
+  if (params_.sentence_of) {
+    auto text = params_.sentence_of(payload);
+    if (text.empty()) {
+      ++totals_.num_bad_positions;
+      return;
+    }
+    ++totals_.num_sentences;
+    on_sentence_({host_time, host_time, 0, 0, std::move(text)});
+    return;
+  }
   if (!params_.has_position_packets) return;
   auto result = vlp16::ParsePositionPacket(payload);
   if (result.fault != vlp16::PositionFault::kNone) ++totals_.num_bad_positions;

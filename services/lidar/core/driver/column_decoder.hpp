@@ -22,6 +22,8 @@ namespace lookout::lidar {
 struct ColumnDecoderParams {
   std::function<std::unique_ptr<PacketReader>()> make_reader;
   bool has_position_packets = false;  // as a VLP-16
+  /// Of models whose second port says something else: the sentence of a payload, empty where it is none. Without a function they are not used.
+  std::function<std::string(Bytes payload)> sentence_of = {};
   TimeChoice time = TimeChoice::kAuto;
   double cut_azimuth_rad = 0.0;
 };

@@ -27,6 +27,16 @@ constexpr std::int64_t kMaxLateNumbers = 512;
 constexpr double kSameSectorRad = DegToRad(2.0);
 constexpr int kSectorSeen = 3;
 constexpr std::size_t kMaxSectors = 8;
+constexpr std::size_t kMaxEmptyAhead = 64;
+
+// By how many numbers the second is ahead, the short way round.
+std::int64_t WayTo(const PacketNumber& from, const PacketNumber& to) {
+  const auto modulus = static_cast<std::int64_t>(to.modulus);
+  auto way = static_cast<std::int64_t>(to.number) - static_cast<std::int64_t>(from.number);
+  if (way > modulus / 2) way -= modulus;
+  if (way < -(modulus / 2)) way += modulus;
+  return way;
+}
 
 // The way from one stamp to another; of stamps past the hour within half an hour to either side.
 nanoseconds Difference(StampKind kind, nanoseconds from, nanoseconds to) {
@@ -63,14 +73,40 @@ PacketOrder::Mark PacketOrder::MarkOf(const Packet& packet, const Head& head) {
 // A packet without a good column says no more than that it was sent: its stamp may be none.
 void PacketOrder::PassEmpty(Utime host_time, const Packet& packet) {
   if (!last_ || !packet.number || !last_->mark.number || packet.number->modulus != last_->mark.number->modulus) return;
-  auto& mark = last_->mark;
-  if (packet.number->number != (mark.number->number + 1) % mark.number->modulus) return;
-  mark.number = packet.number;
-  mark.stamp += mark.duration;
-  mark.has_columns = false;
-  last_->time += mark.duration;
-  last_->host_time = host_time;
+  const auto way = WayTo(*last_->mark.number, *packet.number);
+  if (way <= 0 || way > kMaxMissingNumbers) return;
+  if (empty_ahead_.size() >= kMaxEmptyAhead) empty_ahead_.erase(empty_ahead_.begin());
+  if (std::ranges::find(empty_ahead_, packet.number->number) == empty_ahead_.end()) empty_ahead_.push_back(packet.number->number);
+  if (way == 1) last_->host_time = host_time;
+  SkipEmpty();
   ReleaseWhatIsNext();
+}
+
+// Goes on over packets without a good column whose turn it is.
+void PacketOrder::SkipEmpty() {
+  auto& mark = last_->mark;
+  if (!mark.number || mark.number->modulus == 0) return;
+  std::erase_if(empty_ahead_, [&](std::uint64_t empty) { return WayTo(*mark.number, {empty, mark.number->modulus}) <= 0; });
+  while (!empty_ahead_.empty()) {
+    const auto next = (mark.number->number + 1) % mark.number->modulus;
+    const auto found = std::ranges::find(empty_ahead_, next);
+    if (found == empty_ahead_.end()) return;
+    empty_ahead_.erase(found);
+    mark.number->number = next;
+    mark.stamp += mark.duration;
+    mark.has_columns = false;
+    last_->time += mark.duration;
+  }
+}
+
+// Of the packets that seem to miss before this one: those that came, without a good column. They are forgotten.
+int PacketOrder::NumEmptyBefore(const PacketNumber& number) {
+  if (!last_ || !last_->mark.number) return 0;
+  const auto until = WayTo(*last_->mark.number, number);
+  return static_cast<int>(std::erase_if(empty_ahead_, [&](std::uint64_t empty) {
+    const auto way = WayTo(*last_->mark.number, {empty, number.modulus});
+    return way > 0 && way < until;
+  }));
 }
 
 PacketVerdict PacketOrder::Add(Utime host_time, const Packet& packet, const Head& head) {
@@ -148,10 +184,7 @@ std::optional<PacketOrder::Place> PacketOrder::PlaceByNumber(Utime host_time, co
   const auto& from = last_->mark.number;
   const auto& to = mark.number;
   if (!from || !to || from->modulus != to->modulus || to->modulus < 2) return std::nullopt;
-  const auto modulus = static_cast<std::int64_t>(to->modulus);
-  auto way = static_cast<std::int64_t>(to->number) - static_cast<std::int64_t>(from->number);
-  if (way > modulus / 2) way -= modulus;
-  if (way < -(modulus / 2)) way += modulus;
+  const auto way = WayTo(*from, *to);
   if (way == 0) return difference == nanoseconds(0) ? std::optional(Place{Kind::kDuplicate, last_->time, 0}) : std::nullopt;
   if (way < 0) {
     const bool is_late = way >= -kMaxLateNumbers && difference <= nanoseconds(0) && difference >= -kMaxGap;
@@ -231,10 +264,12 @@ void PacketOrder::Give(Utime host_time, const Packet& packet, const Head& head, 
     if (last_) ++counts_.num_restarts;
     known_ = {};
     dark_.clear();
+    empty_ahead_.clear();
     rate_radps_ = 0.0;
   } else {
     ForgetSectorsIn(packet);
-    placed.num_lost = LostOfGap(mark, place.num_lost);
+    const int num_empty = mark.number && place.num_lost > 0 ? NumEmptyBefore(*mark.number) : 0;
+    placed.num_lost = LostOfGap(mark, std::max(0, place.num_lost - num_empty));
     if (place.kind == Kind::kNext && place.num_lost == 0 && mark.has_columns && last_->mark.has_columns) {
       constexpr double kShare = 1.0 / 16.0;
       const double rate_radps = TurnRad(last_->mark.first_azimuth_rad, mark.first_azimuth_rad) / ToSeconds(place.time - last_->time);
@@ -246,6 +281,7 @@ void PacketOrder::Give(Utime host_time, const Packet& packet, const Head& head, 
   next_known_ = (next_known_ + 1) % known_.size();
   last_ = Last{mark, host_time, place.time};
   on_packet_(placed);
+  SkipEmpty();
 }
 
 // Of the packets that seem to miss before this one, those that were not sent for a limited field of view are no loss.

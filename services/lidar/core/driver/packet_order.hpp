@@ -97,6 +97,8 @@ class PacketOrder {
   double EndAzimuth() const;
   bool IsKnown(const Mark& mark) const;
   void PassEmpty(Utime host_time, const Packet& packet);
+  void SkipEmpty();
+  int NumEmptyBefore(const PacketNumber& number);
   void Hold(Utime host_time, const Packet& packet, const Head& head);
   void ReleaseFirst();
   void ReleaseWhatIsNext();
@@ -112,6 +114,7 @@ class PacketOrder {
   std::size_t next_known_ = 0;
   std::size_t num_late_in_a_row_ = 0;
   std::vector<DarkSector> dark_;
+  std::vector<std::uint64_t> empty_ahead_;  // numbers of packets without a good column that came ahead of their turn; by arrival
   SequenceCounts counts_;
 };
 

@@ -174,6 +174,27 @@ std::vector<ReturnKind> OusterReturns(const OusterMetadata& metadata) {
 
 int OusterFrameBits(OusterProfile profile) { return profile == OusterProfile::kFusaDual ? 32 : 16; }
 
+// Whether the packet has the type of a lidar packet, and good columns that go round. The size is right.
+bool HasOusterColumns(Bytes payload, const OusterLayout& layout) {
+  const bool is_legacy = layout.profile == OusterProfile::kLegacy;
+  const int type = layout.profile == OusterProfile::kFusaDual ? payload[0] : ReadU16LittleEndian(payload, 0);
+  if (!is_legacy && type != kOusterLidarPacket) return false;
+  const std::size_t column_bytes = OusterColumnBytes(layout.profile, layout.pixels_per_column);
+  constexpr int kMaxColumns = 4096;
+  int last_id = -1;
+  for (int i = 0; i < layout.columns_per_packet; ++i) {
+    const std::size_t column = (is_legacy ? 0 : kOusterHeadBytes) + static_cast<std::size_t>(i) * column_bytes;
+    const auto status = is_legacy ? ReadU32LittleEndian(payload, column + column_bytes - kOusterLegacyStatusBytes)
+                                  : ReadU16LittleEndian(payload, column + kOusterStatusOffset);
+    if (is_legacy && status != 0 && status != kOusterLegacyGood) return false;
+    if ((status & 1) == 0) continue;
+    const int id = ReadU16LittleEndian(payload, column + kOusterIdOffset);
+    if (id >= kMaxColumns || id <= last_id || ReadU64LittleEndian(payload, column) >= kOusterMaxStampNs) return false;
+    last_id = id;
+  }
+  return last_id >= 0;
+}
+
 double OusterRangeUnitM(OusterProfile profile) {
   return profile == OusterProfile::kLowBandwidth || profile == OusterProfile::kFusaDual ? 0.008 : 0.001;
 }
@@ -419,6 +440,25 @@ PacketFault OusterReader::Read(Bytes payload, Packet& packet) {
   });
   Fill(payload, packet);
   return PacketFault::kNone;
+}
+
+std::vector<OusterLayout> OusterLayoutsOf(Bytes payload) {
+  constexpr std::array kPixels{16, 32, 64, 128};
+  std::vector<OusterLayout> layouts;
+  for (const auto profile : kOusterProfiles) {
+    for (const int pixels : kPixels) {
+      for (const int columns : kOusterColumnsPerPacket) {
+        const OusterLayout layout{profile, pixels, columns};
+        if (payload.size() == OusterPacketBytes(profile, pixels, columns) && HasOusterColumns(payload, layout)) layouts.push_back(layout);
+      }
+    }
+  }
+  return layouts;
+}
+
+std::chrono::nanoseconds OusterStampOf(Bytes payload, const OusterLayout& layout) {
+  const auto stamp_ns = ReadU64LittleEndian(payload, layout.profile == OusterProfile::kLegacy ? 0 : kOusterHeadBytes);
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::min(stamp_ns, kOusterMaxStampNs)));
 }
 
 std::optional<OusterImu> ParseOusterImu(Bytes payload) {

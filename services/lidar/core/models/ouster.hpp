@@ -95,6 +95,23 @@ class OusterReader final : public PacketReader {
   bool has_other_window_ = false;
 };
 
+/// What a data packet may be, where no metadata say it.
+struct OusterLayout {
+  OusterProfile profile = OusterProfile::kLegacy;
+  int pixels_per_column = 0;
+  int columns_per_packet = 0;
+
+  friend bool operator==(const OusterLayout&, const OusterLayout&) = default;
+};
+
+/// @return every layout that has the size of this payload and columns that follow one another; empty: it is no data packet of an Ouster. Layouts of
+/// one
+///         size cannot be told apart by a packet
+std::vector<OusterLayout> OusterLayoutsOf(Bytes payload);
+
+/// Stamp of the first column. Precondition: `layout` is one of OusterLayoutsOf(payload).
+std::chrono::nanoseconds OusterStampOf(Bytes payload, const OusterLayout& layout);
+
 /// A sample of the sensor's IMU: LEGACY, 48 bytes at 100 Hz. Axes are those of the IMU, OusterMetadata::T_sensor_imu turns them.
 struct OusterImu {
   std::chrono::nanoseconds stamp{0};  // when the packet was made, by the clock of the columns

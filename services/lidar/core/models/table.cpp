@@ -19,18 +19,18 @@ constexpr std::string_view kAngles = "the angle correction of this unit (CSV)";
 
 // In the order of OtherModel. The second port of a Hesai sends 512 bytes of GPS that say nothing about the packets' stamps.
 constexpr std::array kModels{
-    ModelRow{OtherModel::kVlp32c, "Velodyne VLP-32C", false, "", true, kVelodynePositionBytes, kVelodynePort, kVelodynePositionPort},
-    ModelRow{OtherModel::kHdl32e, "Velodyne HDL-32E", false, "", true, kVelodynePositionBytes, kVelodynePort, kVelodynePositionPort},
-    ModelRow{OtherModel::kVls128, "Velodyne VLS-128", false, "", true, kVelodynePositionBytes, kVelodynePort, kVelodynePositionPort},
+    ModelRow{OtherModel::kVlp32c, "Velodyne VLP-32C", false, "", true, kVelodynePositionBytes, kVelodynePort, kVelodynePositionPort, 0},
+    ModelRow{OtherModel::kHdl32e, "Velodyne HDL-32E", false, "", true, kVelodynePositionBytes, kVelodynePort, kVelodynePositionPort, 0},
+    ModelRow{OtherModel::kVls128, "Velodyne VLS-128", false, "", true, kVelodynePositionBytes, kVelodynePort, kVelodynePositionPort, 0},
     ModelRow{OtherModel::kOuster, "an Ouster", true, "the metadata of this sensor (JSON), which http://SENSOR/api/v1/sensor/metadata gives", false,
-             kOusterImuBytes, 7502, 7503},
-    ModelRow{OtherModel::kXt16, "Hesai XT16", false, kAngles, false, 512, kVelodynePort, 10110},
-    ModelRow{OtherModel::kXt32, "Hesai XT32", false, kAngles, false, 512, kVelodynePort, 10110},
-    ModelRow{OtherModel::kXt32m, "Hesai XT32M", false, kAngles, false, 512, kVelodynePort, 10110},
-    ModelRow{OtherModel::kQt64, "Hesai QT64", false, kAngles, false, 512, kVelodynePort, 10110},
-    ModelRow{OtherModel::kQt128, "Hesai QT128", false, kAngles, false, 512, kVelodynePort, 10110},
-    ModelRow{OtherModel::kPandar40p, "Hesai Pandar40P", false, kAngles, false, 512, kVelodynePort, 10110},
-    ModelRow{OtherModel::kPandar64, "Hesai Pandar64", false, kAngles, false, 512, kVelodynePort, 10110},
+             kOusterImuBytes, 7502, 7503, 80},
+    ModelRow{OtherModel::kXt16, "Hesai XT16", false, kAngles, false, 512, kVelodynePort, 10110, 9347},
+    ModelRow{OtherModel::kXt32, "Hesai XT32", false, kAngles, false, 512, kVelodynePort, 10110, 9347},
+    ModelRow{OtherModel::kXt32m, "Hesai XT32M", false, kAngles, false, 512, kVelodynePort, 10110, 9347},
+    ModelRow{OtherModel::kQt64, "Hesai QT64", false, kAngles, false, 512, kVelodynePort, 10110, 9347},
+    ModelRow{OtherModel::kQt128, "Hesai QT128", false, kAngles, false, 512, kVelodynePort, 10110, 9347},
+    ModelRow{OtherModel::kPandar40p, "Hesai Pandar40P", false, kAngles, false, 512, kVelodynePort, 10110, 9347},
+    ModelRow{OtherModel::kPandar64, "Hesai Pandar64", false, kAngles, false, 512, kVelodynePort, 10110, 9347},
 };
 
 std::unique_ptr<PacketReader> MakeHesai(HesaiModel model, const std::string& beam_text) {

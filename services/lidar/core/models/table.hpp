@@ -22,6 +22,7 @@ struct ModelRow {
   std::size_t position_size_bytes;  // of the payloads to the second port; 0 = none are used
   int usual_data_port;              // as delivered
   int usual_position_port;
+  int usual_control_port;  // TCP: of the sensor, which tells its beams there; 0 = it does not
 };
 
 std::span<const ModelRow> ModelTable();
