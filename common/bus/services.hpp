@@ -29,6 +29,8 @@ struct ServiceRow {
 inline constexpr std::array kServices{
     ServiceRow{"lidar", "lidar", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {}},
     ServiceRow{"segmenter", "segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan}},
+    ServiceRow{
+        "odometer", "odometer", "own motion by the lidar", 10, "network", "checks the config", "what stood in sight, speed", {&kLidarScan}, true},
     ServiceRow{"navigator",
                "navigator",
                "position and attitude of the vessel",
@@ -36,7 +38,7 @@ inline constexpr std::array kServices{
                "serial",
                "new config, new run",
                "filter, latest measurements",
-               {&kLidarNmea}},
+               {&kLidarNmea, &kLidarOdometry}},
     ServiceRow{
         "georeferencer", "georeferencer", "obstacles on the earth", 10, "network", "checks the config", "poses, waiting scans", {&kSegments, &kPose}},
     ServiceRow{"tracker",
