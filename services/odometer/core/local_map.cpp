@@ -1,6 +1,6 @@
 #include "services/odometer/core/local_map.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -23,13 +23,23 @@ std::size_t SlotOf(std::uint64_t key, std::size_t num_slots) {
   return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> 32U) & (num_slots - 1);
 }
 
-// A direction in which the points around a place spread by less than this is across a surface: hulls, walls and piles with their noise.
-constexpr double kThinM = 0.15;
-// Foliage is no surface: the difference to its nearest point says a little.
-constexpr double kFoliageWeight = 0.05;
-constexpr int kLeastPointsOfShape = 3;
-// A shape is computed again after so many scans, or when its own cube changed.
-constexpr std::int64_t kShapeScans = 10;
+// What grows and waves in the wind says a little.
+constexpr double kRoughWeight = 0.05;
+// Surfaces that look alike: within 45 deg.
+constexpr float kLeastCosine = 0.7F;
+
+bool LookAlike(const Eigen::Vector3f& normal, Shape shape, const Eigen::Vector3f& other_normal, Shape other_shape) {
+  if (shape != other_shape) return false;
+  return shape != Shape::kSurface || std::abs(normal.dot(other_normal)) > kLeastCosine;
+}
+
+Eigen::Matrix3d WeightOf(const Eigen::Vector3f& normal, Shape shape) {
+  if (shape == Shape::kSurface) {
+    const Eigen::Vector3d across = normal.cast<double>();
+    return across * across.transpose();
+  }
+  return (shape == Shape::kPost ? 1.0 : kRoughWeight) * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal().toDenseMatrix();
+}
 
 }  // namespace
 
@@ -86,19 +96,17 @@ void LocalMap::Clear() {
   cubes_.clear();
 }
 
-void LocalMap::Add(const Eigen::Vector3d& p_m) {
-  const auto place = CubeOf(p_m, kSideM);
+void LocalMap::Add(const MapPoint& point) {
+  const auto place = CubeOf(point.p_m, kSideM);
   const auto [number, is_new] = index_.Insert(place);
   if (is_new) cubes_.emplace_back().place = place;
   Cube& cube = cubes_[static_cast<std::size_t>(number)];
-  const auto num_points = static_cast<std::size_t>(cube.num_points);
-  if (num_points == kMaxPointsPerCube) return;
-  const Eigen::Vector3f p = p_m.cast<float>();
-  for (std::size_t i = 0; i < num_points; ++i) {
-    if ((cube.points_m[i] - p).squaredNorm() < static_cast<float>(kMinSpacingM * kMinSpacingM)) return;
+  if (cube.num_points == kMaxPointsPerCube) return;
+  const Eigen::Vector3f p_m = point.p_m.cast<float>();
+  for (std::size_t i = 0; i < cube.num_points; ++i) {
+    if ((cube.points[i].p_m - p_m).squaredNorm() < static_cast<float>(kMinSpacingM * kMinSpacingM)) return;
   }
-  cube.points_m[num_points] = p;
-  ++cube.num_points;
+  cube.points[cube.num_points++] = {p_m, point.normal.cast<float>(), point.shape};
 }
 
 void LocalMap::Forget(const Eigen::Vector3d& center_m, double radius_m) {
@@ -113,68 +121,31 @@ void LocalMap::Forget(const Eigen::Vector3d& center_m, double radius_m) {
   cubes_ = std::move(kept);
 }
 
-void LocalMap::UpdateShape(Cube& cube) {
-  cube.shape_points = cube.num_points;
-  cube.shape_version = version_;
-  const Eigen::Vector3d origin_m = (cube.place.cast<double>() + Eigen::Vector3d::Constant(0.5)) * kSideM;
-  int num_points = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (int k = 0; k < 27; ++k) {
-    const auto number = index_.Find(cube.place + Eigen::Vector3i(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
-    if (number == CubeIndex::kNone) continue;
-    const Cube& other = cubes_[static_cast<std::size_t>(number)];
-    for (int i = 0; i < other.num_points; ++i) {
-      const Eigen::Vector3d d = other.points_m[static_cast<std::size_t>(i)].cast<double>() - origin_m;
-      sum += d;
-      squares += d * d.transpose();
-    }
-    num_points += other.num_points;
-  }
-  cube.has_shape = num_points >= kLeastPointsOfShape;
-  if (!cube.has_shape) return;
-  const Eigen::Vector3d mean = sum / num_points;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / num_points - mean * mean.transpose());
-  cube.weight.setZero();
-  if (solver.eigenvalues()[0] > kThinM * kThinM) {
-    cube.weight = kFoliageWeight * Eigen::Matrix3d::Identity();
-    return;
-  }
-  for (int i = 0; i < 3; ++i) {
-    if (solver.eigenvalues()[i] > kThinM * kThinM) continue;
-    const Eigen::Vector3d direction = solver.eigenvectors().col(i);
-    cube.weight += direction * direction.transpose();
-  }
-}
-
-std::optional<Match> LocalMap::Nearest(const Eigen::Vector3d& p_m, double radius_m) {
-  const Eigen::Vector3i low = CubeOf(p_m - Eigen::Vector3d::Constant(radius_m), kSideM);
-  const Eigen::Vector3i high = CubeOf(p_m + Eigen::Vector3d::Constant(radius_m), kSideM);
-  double nearest_m2 = radius_m * radius_m;
-  std::int32_t nearest_cube = CubeIndex::kNone;
-  Eigen::Vector3d nearest_m = Eigen::Vector3d::Zero();
+std::optional<Match> LocalMap::Nearest(const MapPoint& point, double radius_m) const {
+  const Eigen::Vector3i low = CubeOf(point.p_m - Eigen::Vector3d::Constant(radius_m), kSideM);
+  const Eigen::Vector3i high = CubeOf(point.p_m + Eigen::Vector3d::Constant(radius_m), kSideM);
+  const Eigen::Vector3f p_m = point.p_m.cast<float>();
+  const Eigen::Vector3f normal = point.normal.cast<float>();
+  float nearest_m2 = static_cast<float>(radius_m * radius_m);
+  const Kept* nearest = nullptr;
   for (int x = low.x(); x <= high.x(); ++x) {
     for (int y = low.y(); y <= high.y(); ++y) {
       for (int z = low.z(); z <= high.z(); ++z) {
         const auto number = index_.Find({x, y, z});
         if (number == CubeIndex::kNone) continue;
         const Cube& cube = cubes_[static_cast<std::size_t>(number)];
-        for (int i = 0; i < cube.num_points; ++i) {
-          const Eigen::Vector3d q_m = cube.points_m[static_cast<std::size_t>(i)].cast<double>();
-          const double distance_m2 = (q_m - p_m).squaredNorm();
-          if (distance_m2 >= nearest_m2) continue;
+        for (std::size_t i = 0; i < cube.num_points; ++i) {
+          const Kept& kept = cube.points[i];
+          const float distance_m2 = (kept.p_m - p_m).squaredNorm();
+          if (distance_m2 >= nearest_m2 || !LookAlike(normal, point.shape, kept.normal, kept.shape)) continue;
           nearest_m2 = distance_m2;
-          nearest_cube = number;
-          nearest_m = q_m;
+          nearest = &kept;
         }
       }
     }
   }
-  if (nearest_cube == CubeIndex::kNone) return std::nullopt;
-  Cube& cube = cubes_[static_cast<std::size_t>(nearest_cube)];
-  if (cube.shape_points != cube.num_points || version_ - cube.shape_version >= kShapeScans) UpdateShape(cube);
-  if (!cube.has_shape) return std::nullopt;
-  return Match{nearest_m, cube.weight};
+  if (nearest == nullptr) return std::nullopt;
+  return Match{nearest->p_m.cast<double>(), WeightOf(nearest->normal, nearest->shape)};
 }
 
 }  // namespace lookout::odometer

@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "services/odometer/core/standing.hpp"
+
 namespace lookout::odometer {
 
 /// A set of cubes of space, by whole numbers along each axis. Its order depends on what was added alone.
@@ -38,6 +40,13 @@ Eigen::Vector3i CubeOf(const Eigen::Vector3d& p_m, double side_m);
 /// The first point of each cube, in their order.
 std::vector<std::size_t> FirstOfEachCube(const std::vector<Eigen::Vector3d>& points_m, double side_m);
 
+/// A return with its surroundings, map frame.
+struct MapPoint {
+  Eigen::Vector3d p_m;
+  Eigen::Vector3d normal;
+  Shape shape;
+};
+
 /// How a return is compared with the map where it lies.
 struct Match {
   Eigen::Vector3d p_map_m;  // nearest point of the map
@@ -51,35 +60,29 @@ class LocalMap {
   static constexpr double kMinSpacingM = 0.25;
 
   void Clear();
-  void Add(const Eigen::Vector3d& p_m);
+  void Add(const MapPoint& point);
   /// Cubes farther than this from `center_m` are forgotten.
   void Forget(const Eigen::Vector3d& center_m, double radius_m);
 
-  /// @return nullopt where no point of the map lies within `radius_m`, or too few lie around it to say what it is
-  std::optional<Match> Nearest(const Eigen::Vector3d& p_m, double radius_m);
+  /// @return nullopt where no point of the map that looks alike lies within `radius_m`
+  std::optional<Match> Nearest(const MapPoint& point, double radius_m) const;
 
   std::size_t num_cubes() const { return cubes_.size(); }
 
  private:
+  struct Kept {
+    Eigen::Vector3f p_m;
+    Eigen::Vector3f normal;
+    Shape shape;
+  };
   struct Cube {
     Eigen::Vector3i place;
-    std::array<Eigen::Vector3f, kMaxPointsPerCube> points_m;
-    int num_points = 0;
-    // Of the points in the 27 cubes around it, when `shape_points` of them stood in this cube and the map had `shape_version`.
-    Eigen::Matrix3d weight;
-    int shape_points = -1;
-    bool has_shape = false;
-    std::int64_t shape_version = 0;
+    std::array<Kept, kMaxPointsPerCube> points;
+    std::size_t num_points = 0;
   };
-  void UpdateShape(Cube& cube);
 
   CubeIndex index_;
   std::vector<Cube> cubes_;
-  std::int64_t version_ = 0;  // counts Forget and scans: see EndScan
-
- public:
-  /// All points of a scan are added: shapes are looked at again after a few of these.
-  void EndScan() { ++version_; }
 };
 
 }  // namespace lookout::odometer

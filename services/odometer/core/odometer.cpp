@@ -126,8 +126,8 @@ void Odometer::Begin(const Scan& scan) {
 }
 
 // In the vessel frame at the end of the scan.
-std::vector<Eigen::Vector3d> Odometer::Straightened(const std::vector<TimedPoint>& points) const {
-  std::vector<Eigen::Vector3d> straightened;
+std::vector<MapPoint> Odometer::Straightened(const std::vector<TimedPoint>& points) const {
+  std::vector<MapPoint> straightened;
   straightened.reserve(points.size());
   for (const auto& point : points) {
     // The vessel frame of the shot lies behind by the way since.
@@ -135,7 +135,10 @@ std::vector<Eigen::Vector3d> Odometer::Straightened(const std::vector<TimedPoint
     const Eigen::Vector2d way_m = -rates_.head<2>() * point.before_end_s;
     const auto [sin, cos] = SinCosOf(turned_rad);
     const auto& p_m = point.p_vessel_m;
-    straightened.emplace_back(cos * p_m.x() - sin * p_m.y() + way_m.x(), sin * p_m.x() + cos * p_m.y() + way_m.y(), p_m.z());
+    const auto& normal = point.normal;
+    straightened.push_back({{cos * p_m.x() - sin * p_m.y() + way_m.x(), sin * p_m.x() + cos * p_m.y() + way_m.y(), p_m.z()},
+                            {cos * normal.x() - sin * normal.y(), sin * normal.x() + cos * normal.y(), normal.z()},
+                            point.shape});
   }
   return straightened;
 }
@@ -170,15 +173,15 @@ Expected Odometer::Predict(double since_s) {
   return expected;
 }
 
-Reason Odometer::Judge(const std::vector<Eigen::Vector3d>& points_m, const Fit& fit) const {
-  if (static_cast<int>(points_m.size()) < kLeastMatched) return Reason::kFewReturns;
-  if (fit.num_matched < kLeastShareOfNear * fit.num_near || fit.num_matched < kLeastShareOfAll * static_cast<double>(points_m.size())) {
+Reason Odometer::Judge(const std::vector<MapPoint>& points, const Fit& fit) const {
+  if (static_cast<int>(points.size()) < kLeastMatched) return Reason::kFewReturns;
+  if (fit.num_matched < kLeastShareOfNear * fit.num_near || fit.num_matched < kLeastShareOfAll * static_cast<double>(points.size())) {
     return Reason::kNoFit;
   }
   if (fit.num_matched < kLeastMatched) return Reason::kFewReturns;
   std::vector<Eigen::Vector3d> matched_m;
-  for (std::size_t i = 0; i < points_m.size(); ++i) {
-    if (fit.is_matched[i]) matched_m.push_back(points_m[i]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (fit.is_matched[i]) matched_m.push_back(points[i].p_m);
   }
   const auto spread = SpreadOf(matched_m);
   if (spread.num_squares < kLeastSquares && spread.num_things < kLeastThings) return Reason::kOneThing;
@@ -186,13 +189,12 @@ Reason Odometer::Judge(const std::vector<Eigen::Vector3d>& points_m, const Fit& 
 }
 
 // What lies near something known and does not fit it moves, and stays out of the map.
-void Odometer::AddToMap(const std::vector<Eigen::Vector3d>& points_m, const std::vector<std::size_t>& sample, const Fit* fit) {
-  std::vector<bool> moves(points_m.size(), false);
+void Odometer::AddToMap(const std::vector<MapPoint>& points, const std::vector<std::size_t>& sample, const Fit* fit) {
+  std::vector<bool> moves(points.size(), false);
   for (std::size_t i = 0; fit != nullptr && i < sample.size(); ++i) moves[sample[i]] = fit->is_near[i] && !fit->is_matched[i];
-  for (std::size_t i = 0; i < points_m.size(); ++i) {
-    if (!moves[i]) map_.Add(T_map_vessel_ * points_m[i]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!moves[i]) map_.Add({T_map_vessel_ * points[i].p_m, T_map_vessel_.linear() * points[i].normal, points[i].shape});
   }
-  map_.EndScan();
   if (++num_scans_ % kForgetEvery == 0) map_.Forget(T_map_vessel_.translation(), kMapRadiusM);
 }
 
@@ -205,25 +207,26 @@ Motion Odometer::Consume(const Scan& scan) {
     motion.begin = motion.end;
     Begin(scan);
   }
-  const auto all_m = Straightened(StandingPoints(scan, params_.standing));
-  std::vector<Eigen::Vector3d> points_m;
-  for (const auto i : FirstOfEachCube(all_m, kMapSampleM)) points_m.push_back(all_m[i]);
+  const auto points = Straightened(StandingPoints(scan, kMapSampleM, params_.standing));
   if (begins) {
-    AddToMap(points_m, {}, nullptr);
+    AddToMap(points, {}, nullptr);
     return motion;
   }
+  std::vector<Eigen::Vector3d> points_m;
+  points_m.reserve(points.size());
+  for (const auto& point : points) points_m.push_back(point.p_m);
   const auto sample = Thinned(FirstOfEachCube(points_m, kSampleM));
-  std::vector<Eigen::Vector3d> sample_m;
-  sample_m.reserve(sample.size());
-  for (const auto i : sample) sample_m.push_back(points_m[i]);
+  std::vector<MapPoint> sampled;
+  sampled.reserve(sample.size());
+  for (const auto i : sample) sampled.push_back(points[i]);
 
   const auto before = T_map_vessel_;
   const auto expected = Predict(since_s);
-  const auto fit = Register(sample_m, expected, map_);
-  motion.num_returns = static_cast<int>(sample_m.size());
+  const auto fit = Register(sampled, expected, map_);
+  motion.num_returns = static_cast<int>(sampled.size());
   motion.num_matched = fit.num_matched;
   motion.residual_m = fit.residual_m;
-  motion.reason = Judge(sample_m, fit);
+  motion.reason = Judge(sampled, fit);
   time_ = scan.end_time;
 
   // From the map's axes to those of the bow before.
@@ -254,10 +257,10 @@ Motion Odometer::Consume(const Scan& scan) {
   if (motion.is_known() || motion.reason == Reason::kUndetermined) {
     num_unknown_ = 0;
     if (num_known_++ < kFirstScans) map_.Clear();
-    AddToMap(points_m, sample, num_known_ <= kFirstScans ? nullptr : &fit);
+    AddToMap(points, sample, num_known_ <= kFirstScans ? nullptr : &fit);
   } else if (++num_unknown_ >= kMaxUnknown) {
     Begin(scan);
-    AddToMap(points_m, {}, nullptr);
+    AddToMap(points, {}, nullptr);
   }
   return motion;
 }

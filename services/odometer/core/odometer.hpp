@@ -55,10 +55,10 @@ class Odometer {
   using Rates = Eigen::Vector3d;  // forward, port (m/s), turn (rad/s, counter-clockwise as the map's axes have it)
 
   void Begin(const Scan& scan);
-  std::vector<Eigen::Vector3d> Straightened(const std::vector<TimedPoint>& points) const;
+  std::vector<MapPoint> Straightened(const std::vector<TimedPoint>& points) const;
   Expected Predict(double since_s);
-  void AddToMap(const std::vector<Eigen::Vector3d>& points_m, const std::vector<std::size_t>& sample, const Fit* fit);
-  Reason Judge(const std::vector<Eigen::Vector3d>& points_m, const Fit& fit) const;
+  void AddToMap(const std::vector<MapPoint>& points, const std::vector<std::size_t>& sample, const Fit* fit);
+  Reason Judge(const std::vector<MapPoint>& points, const Fit& fit) const;
 
   OdometerParams params_;
   LocalMap map_;

@@ -52,15 +52,15 @@ struct Normal {
 };
 
 // Also says which returns are matched.
-Normal Sum(const std::vector<Eigen::Vector3d>& points_m, const Eigen::Isometry3d& T_map_vessel, double search_m, double scale_m, LocalMap& map,
+Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_vessel, double search_m, double scale_m, const LocalMap& map,
            Fit& fit) {
   Normal normal;
   fit.num_near = fit.num_matched = 0;
   double squares_m2 = 0.0;
-  for (std::size_t i = 0; i < points_m.size(); ++i) {
-    const Eigen::Vector3d arm_m = T_map_vessel.linear() * points_m[i];
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d arm_m = T_map_vessel.linear() * points[i].p_m;
     const Eigen::Vector3d p_map_m = arm_m + T_map_vessel.translation();
-    const auto match = map.Nearest(p_map_m, search_m);
+    const auto match = map.Nearest({p_map_m, T_map_vessel.linear() * points[i].normal, points[i].shape}, search_m);
     fit.is_near[i] = match.has_value();
     fit.is_matched[i] = false;
     if (!match) continue;
@@ -87,14 +87,14 @@ Normal Sum(const std::vector<Eigen::Vector3d>& points_m, const Eigen::Isometry3d
 
 }  // namespace
 
-Fit Register(const std::vector<Eigen::Vector3d>& points_m, const Expected& expected, LocalMap& map) {
+Fit Register(const std::vector<MapPoint>& points, const Expected& expected, const LocalMap& map) {
   Fit fit;
   fit.T_map_vessel = expected.T_map_begin;
-  fit.is_near.assign(points_m.size(), false);
-  fit.is_matched.assign(points_m.size(), false);
+  fit.is_near.assign(points.size(), false);
+  fit.is_matched.assign(points.size(), false);
   for (int i = 0; i < kMaxIterations; ++i) {
     const double scale_m = i < kWideIterations ? std::max(kScaleM, expected.search_m / 3.0) : kScaleM;
-    const auto normal = Sum(points_m, fit.T_map_vessel, expected.search_m, scale_m, map, fit);
+    const auto normal = Sum(points, fit.T_map_vessel, expected.search_m, scale_m, map, fit);
     fit.information_seen = normal.information;
     fit.information = normal.information + expected.information;
     const Vector6 gradient = normal.gradient + expected.information * Difference(fit.T_map_vessel, expected.T_map_vessel);

@@ -37,7 +37,7 @@ struct Fit {
 /// Gauss-Newton with the nearest point of the map to each return, its differences weighted by the shape there and by Geman-McClure's function: what
 /// moves counts for little.
 ///
-/// @param points_m  vessel frame at the end of the scan
-Fit Register(const std::vector<Eigen::Vector3d>& points_m, const Expected& expected, LocalMap& map);
+/// @param points  vessel frame at the end of the scan
+Fit Register(const std::vector<MapPoint>& points, const Expected& expected, const LocalMap& map);
 
 }  // namespace lookout::odometer

@@ -39,13 +39,23 @@ struct StandingParams {
   Eigen::AlignedBox3d own_vessel_box_m;  // vessel frame; empty = none
 };
 
+/// How the surroundings of a return look in its scan.
+enum class Shape {
+  kSurface,  // even: it tells the distance across it
+  kPost,     // narrower than 0.6 m, with free sight beside it: it tells both directions on the water
+  kRough     // foliage and the like
+};
+
 /// A return in the vessel frame at the time of its shot.
 struct TimedPoint {
   Eigen::Vector3d p_vessel_m;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // vessel frame; of a surface: across it, of either sign
+  Shape shape = Shape::kRough;
   double before_end_s = 0.0;  // its shot is so long before the last shot of the scan
 };
 
-/// By column, then ring. A return counts where a neighbouring shot met the same surface: drops stand alone.
-std::vector<TimedPoint> StandingPoints(const Scan& scan, const StandingParams& params);
+/// One return of each cube of `sample_m`, the first by column, then ring. A return counts where a neighbouring shot met the same surface: drops stand
+/// alone.
+std::vector<TimedPoint> StandingPoints(const Scan& scan, double sample_m, const StandingParams& params);
 
 }  // namespace lookout::odometer
