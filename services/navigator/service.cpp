@@ -24,8 +24,13 @@ std::string InSeconds(std::chrono::microseconds duration) {
 Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(params), navigator_(params.navigator) {
   if (params_.reads_nav_raw) {
     bus::Subscribe<nav_raw_t>(bus_, bus::kNavRaw, [this](const nav_raw_t& message) { OnNavRaw(message); });
-  } else if (params_.use_lidar_nmea) {
+    return;
+  }
+  if (params_.use_lidar_nmea) {
     bus::Subscribe<lidar_nmea_t>(bus_, bus::kLidarNmea, [this](const lidar_nmea_t& message) { OnLidarNmea(message); });
+  }
+  if (params_.navigator.use_lidar_odometry) {
+    bus::Subscribe<lidar_odometry_t>(bus_, bus::kLidarOdometry, [this](const lidar_odometry_t& message) { OnLidarOdometry(message); });
   }
 }
 
@@ -85,6 +90,16 @@ void Service::OnLidarNmea(const lidar_nmea_t& message) {
     return;
   }
   PublishAndConsume(sequencer_.OnLidarSentence(*arrival, message.sentence));
+}
+
+void Service::OnLidarOdometry(const lidar_odometry_t& message) {
+  const auto motion = ToMotion(message);
+  if (!motion) {
+    ++counts_["lidar_odometry_bad"];
+    return;
+  }
+  // Where the earth is known it would only fill the log.
+  if (navigator_.WantsOdometry()) PublishAndConsume(sequencer_.OnOdometry(motion->end, ToSentence(*motion)));
 }
 
 void Service::OnNavRaw(const nav_raw_t& message) {

@@ -164,6 +164,8 @@ OwnShip ToOwnShip(const pose_t& message) {
   OwnShip own;
   own.time = Utime(std::chrono::microseconds(message.utime_us));
   own.is_estimated = message.status == pose_t::STATUS_COASTING;
+  // In a frame of its own neither position nor heading are of the earth.
+  if (message.status >= pose_t::STATUS_RELATIVE) return own;
   const bool has_position = message.status != pose_t::STATUS_NO_POSITION && message.status != pose_t::STATUS_UNKNOWN;
   const bool has_heading = message.status != pose_t::STATUS_NO_HEADING && message.status != pose_t::STATUS_UNKNOWN;
   // Course over ground that stands in for a heading is told as course only: a chart program would take it for a compass.
