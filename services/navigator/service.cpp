@@ -147,6 +147,11 @@ HealthReport Service::Report() const {
   if (!filter.last_fix_arrival()) add("no position fix yet");
   if (!pose || (pose->heading_source == HeadingSource::kNone && !filter.has_had_heading())) add("no heading");
   if (pose && pose->heading_source == HeadingSource::kCourse) add("heading is only the course over ground: no compass or attitude sensor");
+  if (pose && pose->status == PoseStatus::kRelativeToBoat) {
+    add("POSE is relative to the boat: no position, and nothing that stands in sight; its own motion counts as none");
+  } else if (pose && (pose->status == PoseStatus::kRelative || pose->status == PoseStatus::kRelativeCoasting)) {
+    add("POSE is relative: it began where the boat was, and its way is by the lidar");
+  }
   if (!filter.datum_complaint().empty()) add(filter.datum_complaint());
   if (const auto off = navigator_.host_minus_utc(); off != std::chrono::microseconds(0)) {
     add("clock of this computer is off UTC by " + InSeconds(off));

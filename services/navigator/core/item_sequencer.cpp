@@ -83,6 +83,7 @@ std::vector<Item> ItemSequencer::OnLidarSentence(Utime arrival, const std::strin
 std::vector<Item> ItemSequencer::OnOdometry(Utime end, const std::string& sentence) {
   std::vector<Item> items;
   if (!has_host_clock_) items = Advance(end);
+  if (!last_) return {};  // behind the end mark
   items.push_back(Make(last_host_time_, ItemKind::kSentence, kOdometerSource, sentence));
   return items;
 }

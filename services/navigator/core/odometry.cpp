@@ -1,9 +1,8 @@
 #include "services/navigator/core/odometry.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "common/core/angles.hpp"
@@ -21,17 +20,27 @@ constexpr double kMaxTimeUs = 7.3e15;  // the year 2200
 // Above the diagonal, row by row.
 constexpr std::array<std::pair<int, int>, 6> kUpper{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
 
+// ",-0.123456"
+std::string Field(double value, int decimals) {
+  std::array<char, 48> text{};
+  const int length = std::snprintf(text.data(), text.size(), ",%.*f", decimals, value);
+  return {text.data(), static_cast<std::size_t>(length)};
+}
+
 }  // namespace
 
 std::string ToSentence(const OdometryMotion& motion) {
-  auto body = fmt::format("{},{},{},{}", kAddress, ToUtimeUs(motion.begin), ToUtimeUs(motion.end), motion.is_known ? 'K' : 'U');
+  std::string body(kAddress);
+  body += "," + std::to_string(ToUtimeUs(motion.begin)) + "," + std::to_string(ToUtimeUs(motion.end)) + (motion.is_known ? ",K" : ",U");
   if (motion.is_known) {
-    body += fmt::format(",{:.6f},{:.6f},{:.9f}", motion.displacement_m.x(), motion.displacement_m.y(), motion.turn_rad);
-    for (const auto& [row, column] : kUpper) body += fmt::format(",{:.12f}", motion.covariance(row, column));
+    body += Field(motion.displacement_m.x(), 6) + Field(motion.displacement_m.y(), 6) + Field(motion.turn_rad, 9);
+    for (const auto& [row, column] : kUpper) body += Field(motion.covariance(row, column), 12);
   }
   unsigned sum = 0;
   for (const char character : body) sum ^= static_cast<unsigned char>(character);
-  return fmt::format("${}*{:02X}", body, sum);
+  std::array<char, 8> end{};
+  std::snprintf(end.data(), end.size(), "*%02X", sum & 0xFFU);
+  return "$" + body + end.data();
 }
 
 std::optional<OdometryMotion> ParseOdometry(std::string_view line) {

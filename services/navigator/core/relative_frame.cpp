@@ -105,7 +105,7 @@ void RelativeFrame::Add(const OdometryMotion& motion) {
   if (begin.time > nodes_.back().time) nodes_.push_back(begin);
   const double for_s = Seconds(motion.end - motion.begin);
   nodes_.push_back(Moved(begin, motion.end, motion.displacement_m, motion.turn_rad, motion.covariance));
-  // Along the heading at the end of the motion; the mean of the time lies half a turn before.
+  // Along the heading at the end of the motion; the mean direction is that of its middle.
   const auto [sin, cos] = SinCosOf(0.5 * motion.turn_rad);
   const auto& way_m = motion.displacement_m;
   rates_ = Eigen::Vector3d(cos * way_m.x() - sin * way_m.y(), sin * way_m.x() + cos * way_m.y(), motion.turn_rad) / for_s;
@@ -147,7 +147,8 @@ Pose RelativeFrame::At(const Pose& earth, double tilt_sd_rad) {
   pose.status = since <= kFresh ? PoseStatus::kRelative : since <= kCoasts ? PoseStatus::kRelativeCoasting : PoseStatus::kRelativeToBoat;
   pose.heading_source = heading_source_;
   pose.datum = {kNan, kNan, static_cast<double>(num_frames_)};
-  pose.latitude_deg = pose.longitude_deg = pose.ellipsoid_height_m = kNan;
+  // A receiver alone still says where the boat is, but not which way the map lies.
+  if (earth.status != PoseStatus::kNoHeading) pose.latitude_deg = pose.longitude_deg = pose.ellipsoid_height_m = kNan;
   pose.p_map_m = {node.p_m.x(), node.p_m.y(), 0.0};
   pose.heading_rad = node.heading_rad;
   const bool moves = pose.status != PoseStatus::kRelativeToBoat;

@@ -36,13 +36,13 @@ constexpr int kFirstScans = 5;
 // After so many scans without a known motion the map begins anew.
 constexpr int kMaxUnknown = 5;
 
-constexpr int kLeastMatched = 25;
+constexpr int kLeastMatched = 60;
 constexpr double kLeastShareOfNear = 0.5;
 constexpr double kLeastShareOfAll = 0.15;
 // What stands is more than one boat: returns in so many squares, or in so many things apart from each other.
 constexpr double kSquareM = 5.0;
-constexpr std::size_t kLeastSquares = 7;
-constexpr std::size_t kLeastThings = 4;
+constexpr std::size_t kLeastSquares = 10;
+constexpr std::size_t kLeastThings = 5;
 // The rates are known where their deviations are below.
 constexpr double kMaxSpeedSdMps = 0.7;
 constexpr double kMaxTurnSdRadps = 0.05;
@@ -256,6 +256,8 @@ Motion Odometer::Consume(const Scan& scan) {
   }
   if (motion.is_known() || motion.reason == Reason::kUndetermined) {
     num_unknown_ = 0;
+    // The speed, by which scans are straightened, settles.
+    if (num_known_ < kFirstScans) motion.reason = Reason::kUndetermined;
     if (num_known_++ < kFirstScans) map_.Clear();
     AddToMap(points, sample, num_known_ <= kFirstScans ? nullptr : &fit);
   } else if (++num_unknown_ >= kMaxUnknown) {

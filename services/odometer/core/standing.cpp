@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
+#include <utility>
 
 #include "common/core/elementary.hpp"
 #include "services/odometer/core/local_map.hpp"
@@ -65,11 +65,16 @@ class RangeImage {
            IsNear(column, ring - 1, range_m, step_m);
   }
 
-  void Describe(int column, int ring, TimedPoint& point) const;
+  // @return false where the surroundings say nothing: a wall seen at a grazing angle looks alike everywhere
+  bool Describe(int column, int ring, TimedPoint& point) const;
 
  private:
   bool IsPost(int column, int ring, double range_m) const;
-  std::optional<Vector3d> AlongRing(int column, int ring, const Vector3d& p_m, double range_m) const;
+  struct Along {
+    Vector3d along_m = Vector3d::Zero();  // 0: no neighbour says
+    bool is_uneven = false;
+  };
+  Along AlongRing(int column, int ring, const Vector3d& p_m, double range_m) const;
   Vector3d AcrossRings(int column, int ring, const Vector3d& p_m, double range_m) const;
 
   const Scan& scan_;
@@ -99,8 +104,8 @@ bool RangeImage::IsPost(int column, int ring, double range_m) const {
   return true;
 }
 
-// Direction of the surface along the ring; nullopt where it is uneven.
-std::optional<Vector3d> RangeImage::AlongRing(int column, int ring, const Vector3d& p_m, double range_m) const {
+// Direction of the surface along the ring.
+RangeImage::Along RangeImage::AlongRing(int column, int ring, const Vector3d& p_m, double range_m) const {
   const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
   int reach = 0;
   while (reach < kReach && IsNear(column + reach + 1, ring, range_m, step_m * (reach + 1)) &&
@@ -112,16 +117,15 @@ std::optional<Vector3d> RangeImage::AlongRing(int column, int ring, const Vector
     const Vector3d other_m = PointAt(column + reach, ring);
     const Vector3d along_m = other_m - one_m;
     const Vector3d away_m = p_m - one_m - along_m * (along_m.dot(p_m - one_m) / along_m.squaredNorm());
-    if (away_m.squaredNorm() > kUnevenM * kUnevenM) return std::nullopt;
-    return along_m;
+    return {along_m, away_m.squaredNorm() > kUnevenM * kUnevenM};
   }
   // The end of a surface: one side.
   for (const int side : {-1, 1}) {
     if (IsNear(column + 2 * side, ring, range_m, 2.0 * step_m) && IsNear(column + side, ring, range_m, step_m)) {
-      return PointAt(column + 2 * side, ring) - p_m;
+      return {PointAt(column + 2 * side, ring) - p_m, false};
     }
   }
-  return std::nullopt;
+  return {};
 }
 
 // Upwards along the surface; straight up where no other ring met it.
@@ -133,19 +137,20 @@ Vector3d RangeImage::AcrossRings(int column, int ring, const Vector3d& p_m, doub
   return (has_upper ? PointAt(column, ring + 1) : p_m) - (has_lower ? PointAt(column, ring - 1) : p_m);
 }
 
-void RangeImage::Describe(int column, int ring, TimedPoint& point) const {
+bool RangeImage::Describe(int column, int ring, TimedPoint& point) const {
   const double range_m = RangeM(column, ring);
   if (IsPost(column, ring, range_m)) {
     point.shape = Shape::kPost;
-    return;
+    return true;
   }
-  const auto along_m = AlongRing(column, ring, point.p_vessel_m, range_m);
-  if (!along_m) return;
-  const Vector3d normal = along_m->cross(AcrossRings(column, ring, point.p_vessel_m, range_m));
+  const auto along = AlongRing(column, ring, point.p_vessel_m, range_m);
+  if (along.is_uneven) return true;
+  const Vector3d normal = along.along_m.cross(AcrossRings(column, ring, point.p_vessel_m, range_m));
   const double length = normal.norm();
-  if (length <= 0.0) return;
+  if (length <= 0.0) return false;
   point.normal = normal / length;
   point.shape = Shape::kSurface;
+  return true;
 }
 
 }  // namespace
@@ -167,8 +172,7 @@ std::vector<TimedPoint> StandingPoints(const Scan& scan, double sample_m, const 
       if (!cubes.Insert(CubeOf(p_vessel_m, sample_m)).second) continue;
       const auto time_ns = scan.time_ns[static_cast<std::size_t>(column)] + scan.rings[static_cast<std::size_t>(ring)].time_offset_ns;
       point.before_end_s = static_cast<double>(end_ns - time_ns) * 1e-9;
-      image.Describe(column, ring, point);
-      points.push_back(point);
+      if (image.Describe(column, ring, point)) points.push_back(point);
     }
   }
   return points;

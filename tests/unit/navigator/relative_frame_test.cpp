@@ -74,7 +74,9 @@ TEST(RelativeFrame, BeginsWhereTheBoatIsAndGoesWithIt) {
     const Utime time = kStart + i * 100ms;
     frame.Add(Straight(time, 0.2));
     pose = frame.At(Unknown(time), kTiltSdRad);
-    if (i < 5) EXPECT_EQ(pose.status, PoseStatus::kUnknown) << i;
+    if (i < 5) {
+      EXPECT_EQ(pose.status, PoseStatus::kUnknown) << i;
+    }
     if (i == 5) {
       EXPECT_EQ(pose.status, PoseStatus::kRelative);
       EXPECT_EQ(pose.p_map_m.head<2>().norm(), 0.0);
