@@ -27,6 +27,7 @@ constexpr double kUnknownTurnSdRadps = 0.5;
 // Attitude and height against calm water: those of a small boat in waves.
 constexpr double kTiltSdRad = 0.06;
 constexpr double kHeaveSdM = 0.3;
+constexpr double kTiltSmoothing = 0.5;
 
 constexpr double kLeastSearchM = 0.5;
 constexpr double kMostSearchM = 2.0;
@@ -43,6 +44,9 @@ constexpr double kLeastShareOfAll = 0.15;
 constexpr double kSquareM = 5.0;
 constexpr std::size_t kLeastSquares = 10;
 constexpr std::size_t kLeastThings = 5;
+// Or it is all around the boat, as in a lock: returns in so many of 12 sectors. A boat alongside takes 6 at most.
+constexpr int kNumSectors = 12;
+constexpr int kLeastSectors = 8;
 // The rates are known where their deviations are below.
 constexpr double kMaxSpeedSdMps = 0.7;
 constexpr double kMaxTurnSdRadps = 0.05;
@@ -71,14 +75,18 @@ Eigen::Matrix3d PlanarOf(const Matrix6& matrix) {
 struct Spread {
   std::size_t num_squares = 0;
   std::size_t num_things = 0;
+  int num_sectors = 0;  // seen from the boat
 };
 
 Spread SpreadOf(const std::vector<Eigen::Vector3d>& points_m) {
+  std::array<bool, kNumSectors> is_met{};
   CubeIndex index;
   std::vector<Eigen::Vector3i> squares;
   for (const auto& p_m : points_m) {
     auto square = CubeOf(p_m, kSquareM);
     square.z() = 0;
+    const double bearing_rad = WrapTo2Pi(Atan2(p_m.y(), p_m.x()));
+    is_met[static_cast<std::size_t>(std::clamp(static_cast<int>(bearing_rad / kTwoPi * kNumSectors), 0, kNumSectors - 1))] = true;
     if (index.Insert(square).second) squares.push_back(square);
   }
   std::vector<bool> is_counted(squares.size(), false);
@@ -100,7 +108,7 @@ Spread SpreadOf(const std::vector<Eigen::Vector3d>& points_m) {
       }
     }
   }
-  return {squares.size(), num_things};
+  return {squares.size(), num_things, static_cast<int>(std::ranges::count(is_met, true))};
 }
 
 // At most kMaxSample, evenly out of all.
@@ -121,6 +129,7 @@ void Odometer::Begin(const Scan& scan) {
   time_ = scan.end_time;
   T_map_vessel_ = Eigen::Isometry3d::Identity();
   rates_.setZero();
+  tilt_rates_radps_.setZero();
   rates_covariance_ = Eigen::Vector3d(kUnknownSpeedSdMps, kUnknownSpeedSdMps, kUnknownTurnSdRadps).cwiseAbs2().asDiagonal();
   num_known_ = num_unknown_ = 0;
 }
@@ -136,7 +145,11 @@ std::vector<MapPoint> Odometer::Straightened(const std::vector<TimedPoint>& poin
     const auto [sin, cos] = SinCosOf(turned_rad);
     const auto& p_m = point.p_vessel_m;
     const auto& normal = point.normal;
-    straightened.push_back({{cos * p_m.x() - sin * p_m.y() + way_m.x(), sin * p_m.x() + cos * p_m.y() + way_m.y(), p_m.z()},
+    // By the small angles through which the boat rolls and pitches meanwhile.
+    const Eigen::Vector3d tilt_rad(-tilt_rates_radps_.x() * point.before_end_s, -tilt_rates_radps_.y() * point.before_end_s, 0.0);
+    const Eigen::Vector3d by_tilt_m = tilt_rad.cross(p_m);
+    straightened.push_back({{cos * p_m.x() - sin * p_m.y() + way_m.x() + by_tilt_m.x(), sin * p_m.x() + cos * p_m.y() + way_m.y() + by_tilt_m.y(),
+                             p_m.z() + by_tilt_m.z()},
                             {cos * normal.x() - sin * normal.y(), sin * normal.x() + cos * normal.y(), normal.z()},
                             point.shape});
   }
@@ -155,7 +168,8 @@ Expected Odometer::Predict(double since_s) {
   const Eigen::Vector2d p_m = T_map_vessel_.translation().head<2>() + R_middle.topLeftCorner<2, 2>() * rates_.head<2>() * since_s;
   // The search begins with the attitude and the height of before; what is expected of both is calm water.
   expected.T_map_begin = T_map_vessel_;
-  expected.T_map_begin.linear() = RotationAboutZ(turn_rad) * T_map_vessel_.linear();
+  const Eigen::Vector3d tilt_rad(tilt_rates_radps_.x() * since_s, tilt_rates_radps_.y() * since_s, 0.0);
+  expected.T_map_begin.linear() = RotationAboutZ(turn_rad) * T_map_vessel_.linear() * RotationBy(tilt_rad);
   expected.T_map_begin.translation().head<2>() = p_m;
   expected.T_map_vessel = Planar(p_m, bearing_rad);
   const Eigen::Matrix3d R_map_vessel = RotationAboutZ(bearing_rad);
@@ -184,7 +198,7 @@ Reason Odometer::Judge(const std::vector<MapPoint>& points, const Fit& fit) cons
     if (fit.is_matched[i]) matched_m.push_back(points[i].p_m);
   }
   const auto spread = SpreadOf(matched_m);
-  if (spread.num_squares < kLeastSquares && spread.num_things < kLeastThings) return Reason::kOneThing;
+  if (spread.num_squares < kLeastSquares && spread.num_things < kLeastThings && spread.num_sectors < kLeastSectors) return Reason::kOneThing;
   return Reason::kNone;
 }
 
@@ -240,6 +254,8 @@ Motion Odometer::Consume(const Scan& scan) {
     motion.turn_rad = -turn_rad;
     motion.covariance.row(2) *= -1.0;
     motion.covariance.col(2) *= -1.0;
+    const Eigen::Vector3d rotation_rad = RotationVector(before.linear().transpose() * fit.T_map_vessel.linear());
+    tilt_rates_radps_ = kTiltSmoothing * tilt_rates_radps_ + (1.0 - kTiltSmoothing) * rotation_rad.head<2>() / since_s;
     T_map_vessel_ = fit.T_map_vessel;
     const Eigen::Matrix2d R_middle = RotationAboutZ(-0.5 * turn_rad).topLeftCorner<2, 2>();
     rates_.head<2>() = R_middle * motion.displacement_m / since_s;
@@ -252,6 +268,7 @@ Motion Odometer::Consume(const Scan& scan) {
       motion.reason = Reason::kUndetermined;
     }
   } else {
+    tilt_rates_radps_.setZero();
     T_map_vessel_ = expected.T_map_begin;
   }
   if (motion.is_known() || motion.reason == Reason::kUndetermined) {

@@ -66,6 +66,8 @@ class Odometer {
   Eigen::Isometry3d T_map_vessel_ = Eigen::Isometry3d::Identity();
   Rates rates_ = Rates::Zero();
   Eigen::Matrix3d rates_covariance_ = Eigen::Matrix3d::Zero();
+  // How the boat rolls and pitches: about its x and y axes, rad/s, smoothed.
+  Eigen::Vector2d tilt_rates_radps_ = Eigen::Vector2d::Zero();
   int num_known_ = 0;    // scans in a row whose motion is known
   int num_unknown_ = 0;  // or not
   std::int64_t num_scans_ = 0;

@@ -11,6 +11,12 @@ namespace lookout::odometer {
 
 namespace {
 
+Eigen::Matrix3d Cross(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return matrix;
+}
+
 constexpr int kMaxIterations = 12;
 // Steps smaller than this end the search.
 constexpr double kStepM = 0.001;
@@ -22,23 +28,6 @@ constexpr double kScaleM = 0.15;
 constexpr int kWideIterations = 4;
 // A return is matched where its difference, as the shape weights it, is below this.
 constexpr double kMatchedM = 0.2;
-
-Eigen::Matrix3d Cross(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return matrix;
-}
-
-Eigen::Matrix3d RotationBy(const Eigen::Vector3d& rotation_rad) {
-  const double angle_rad = rotation_rad.norm();
-  if (angle_rad < 1e-12) return Eigen::Matrix3d::Identity();
-  const auto [sin, cos] = SinCosOf(angle_rad);
-  const Eigen::Matrix3d cross = Cross(rotation_rad / angle_rad);
-  return Eigen::Matrix3d::Identity() + sin * cross + (1.0 - cos) * (cross * cross);
-}
-
-// Difference of two rotations as a vector, small.
-Eigen::Vector3d RotationVector(const Eigen::Matrix3d& R) { return 0.5 * Eigen::Vector3d(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)); }
 
 Vector6 Difference(const Eigen::Isometry3d& T, const Eigen::Isometry3d& from) {
   Vector6 difference;
@@ -86,6 +75,16 @@ Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_v
 }
 
 }  // namespace
+
+Eigen::Matrix3d RotationBy(const Eigen::Vector3d& rotation_rad) {
+  const double angle_rad = rotation_rad.norm();
+  if (angle_rad < 1e-12) return Eigen::Matrix3d::Identity();
+  const auto [sin, cos] = SinCosOf(angle_rad);
+  const Eigen::Matrix3d cross = Cross(rotation_rad / angle_rad);
+  return Eigen::Matrix3d::Identity() + sin * cross + (1.0 - cos) * (cross * cross);
+}
+
+Eigen::Vector3d RotationVector(const Eigen::Matrix3d& R) { return 0.5 * Eigen::Vector3d(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)); }
 
 Fit Register(const std::vector<MapPoint>& points, const Expected& expected, const LocalMap& map) {
   Fit fit;

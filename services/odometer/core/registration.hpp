@@ -13,6 +13,11 @@ namespace lookout::odometer {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
+/// Rotation by a vector: axis times angle.
+Eigen::Matrix3d RotationBy(const Eigen::Vector3d& rotation_rad);
+/// The vector of a small rotation.
+Eigen::Vector3d RotationVector(const Eigen::Matrix3d& R);
+
 /// What is known before the returns are looked at.
 struct Expected {
   Eigen::Isometry3d T_map_vessel = Eigen::Isometry3d::Identity();

@@ -91,6 +91,13 @@ TEST(Odometer, OneBoatAloneIsUnknown) {
   EXPECT_EQ(NumKnown(MotionsOf(walls, {2.0, 0.0}, 30)), 0);
 }
 
+// In a lock, where everything is within 8 m.
+TEST(Odometer, WallsAllAroundAreNotOneThing) {
+  std::vector<Wall> walls;
+  AddBox({0.0, 0.0}, 16.0, 8.0, Eigen::Vector2d::Zero(), walls);
+  EXPECT_GE(NumKnown(MotionsOf(walls, {0.2, 0.0}, 20)), 12);
+}
+
 // A straight quay says nothing of the motion along it: it is unknown from the start, and told by the covariance where it was known before.
 TEST(Odometer, AStraightQuayLeavesTheWayAlongItOpen) {
   const std::vector<Wall> quay{{{-300.0, 10.0}, {300.0, 10.0}}};
