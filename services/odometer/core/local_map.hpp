@@ -73,7 +73,7 @@ class LocalMap {
   struct Kept {
     Eigen::Vector3f p_m;
     Eigen::Vector3f normal;
-    Shape shape;
+    Shape shape = Shape::kRough;
   };
   struct Cube {
     Eigen::Vector3i place;
