@@ -20,6 +20,7 @@ struct Channel {
 inline constexpr Channel kLidarPackets{"LIDAR_PACKETS", "lidar_packets_t", "lidar", 100, 200, true, true};
 inline constexpr Channel kLidarScan{"LIDAR_SCAN", "lidar_scan_t", "lidar", 40, 80, false, true};
 inline constexpr Channel kLidarClock{"LIDAR_CLOCK", "lidar_clock_t", "lidar", 20, 40, false, true};
+inline constexpr Channel kLidarOdometry{"LIDAR_ODOMETRY", "lidar_odometry_t", "odometer", 20, 40, false, true};
 inline constexpr Channel kLidarNmea{"LIDAR_NMEA", "lidar_nmea_t", "lidar", 150, 300, false, true};
 inline constexpr Channel kSegments{"SEGMENTS", "segments_t", "segmenter", 80, 160, false, true};
 inline constexpr Channel kNavRaw{"NAV_RAW", "nav_raw_t", "navigator", 500, 1000, true, true};
@@ -44,9 +45,9 @@ inline constexpr Channel kRunInfo{"RUN_INFO", "run_info_t", "recorder", 1, 10, f
 // Of a simulation: stands in its own log, never on a boat's bus.
 inline constexpr Channel kSimTruth{"SIM_TRUTH", "sim_truth_t", "sim", 80, 160, false, false};
 
-inline constexpr std::array kChannels{kLidarBeams, kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw, kGnssFix,
-                                      kAttitude,   kPose,         kObstacles, kTracks,     kAlerts,    kAlertAck, kOrders, kLidarPackets2,
-                                      kLidarScan2, kLidarClock2,  kSegments2, kHealth,     kRunInfo,   kSimTruth};
+inline constexpr std::array kChannels{kLidarBeams,    kLidarPackets, kLidarScan,   kLidarClock, kLidarOdometry, kLidarNmea, kSegments, kNavRaw,
+                                      kGnssFix,       kAttitude,     kPose,        kObstacles,  kTracks,        kAlerts,    kAlertAck, kOrders,
+                                      kLidarPackets2, kLidarScan2,   kLidarClock2, kSegments2,  kHealth,        kRunInfo,   kSimTruth};
 
 /// Whether more than one process may send it: then its messages carry no numbers of one stream.
 constexpr bool HasSeveralPublishers(const Channel& channel) { return channel.publisher == "all" || channel.publisher == "several"; }

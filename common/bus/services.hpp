@@ -30,6 +30,8 @@ inline constexpr std::array kServices{
     ServiceRow{
         "lidar", "lidar", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {&kLidarBeams}},
     ServiceRow{"segmenter", "segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan, &kLidarScan2}},
+    ServiceRow{
+        "odometer", "odometer", "own motion by the lidar", 10, "network", "checks the config", "what stood in sight, speed", {&kLidarScan}, true},
     ServiceRow{"navigator",
                "navigator",
                "position and attitude of the vessel",
@@ -37,7 +39,7 @@ inline constexpr std::array kServices{
                "serial",
                "new config, new run",
                "filter, latest measurements",
-               {&kLidarNmea}},
+               {&kLidarNmea, &kLidarOdometry}},
     ServiceRow{"georeferencer",
                "georeferencer",
                "obstacles on the earth",

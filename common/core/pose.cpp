@@ -20,6 +20,7 @@ double HeadingBetween(double from_rad, double to_rad, double share) { return Wra
 }  // namespace
 
 bool Datum::IsSameAs(const Datum& other) const {
+  if (IsRelative()) return other.IsRelative() && ellipsoid_height_m == other.ellipsoid_height_m;
   return latitude_deg == other.latitude_deg && longitude_deg == other.longitude_deg && IsSameNumber(ellipsoid_height_m, other.ellipsoid_height_m);
 }
 
@@ -27,7 +28,7 @@ LocalFrame Datum::Map() const { return LocalFrame({latitude_deg, longitude_deg, 
 
 void PoseHistory::Add(const Pose& pose) {
   poses_.push_back(pose);
-  if (pose.is_placed && !pose.position_map_m.head<2>().isZero(0.0)) {
+  if (pose.is_placed && !pose.datum.IsRelative() && !pose.position_map_m.head<2>().isZero(0.0)) {
     const LocalFrame map = pose.datum.Map();
     poses_.back().R_map_here = map.TransformFrom(LocalFrame(map.Reverse(pose.position_map_m))).linear();
   }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <limits>
@@ -20,7 +21,11 @@ struct Datum {
   double longitude_deg = kNan;
   double ellipsoid_height_m = kNan;
 
-  /// The map frame; an unknown height counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of distance.
+  /// A frame of its own, not on the earth: latitude and longitude are NaN, the height is its number.
+  bool IsRelative() const { return std::isnan(latitude_deg) && std::isnan(longitude_deg) && std::isfinite(ellipsoid_height_m); }
+
+  /// Not of a relative frame. The map frame; an unknown height counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of
+  /// distance.
   LocalFrame Map() const;
   /// The same map frame, bit for bit. A datum that is not known equals none.
   bool IsSameAs(const Datum& other) const;

@@ -175,10 +175,12 @@ bool CountsAgree(const obstacle_t& obstacle) {
          obstacle.num_map == (is_placed ? obstacle.num_footprint : 0) && obstacle.num_waterline_map == (is_placed ? obstacle.num_waterline : 0);
 }
 
-bool AreNumbersGood(const obstacle_t& obstacle) {
+// @param is_relative  the map frame is not on the earth: there is no latitude and longitude
+bool AreNumbersGood(const obstacle_t& obstacle, bool is_relative) {
   const bool is_placed = obstacle.status == obstacle_t::STATUS_OK;
-  if (is_placed && !(IsWithin(obstacle.latitude_deg, 90.0) && IsWithin(obstacle.longitude_deg, 180.0) &&
-                     IsWithin(obstacle.position_map_m[0], kMaxPlaceM) && IsWithin(obstacle.position_map_m[1], kMaxPlaceM))) {
+  const bool has_place = is_relative ? std::isnan(obstacle.latitude_deg) && std::isnan(obstacle.longitude_deg)
+                                     : IsWithin(obstacle.latitude_deg, 90.0) && IsWithin(obstacle.longitude_deg, 180.0);
+  if (is_placed && !(has_place && IsWithin(obstacle.position_map_m[0], kMaxPlaceM) && IsWithin(obstacle.position_map_m[1], kMaxPlaceM))) {
     return false;
   }
   return IsWithin(obstacle.top_above_water_m, kMaxLidarM) && IsWithin(double{obstacle.center_vessel_m[0]}, kMaxLidarM) &&
@@ -265,6 +267,8 @@ std::optional<Fault> FaultOf(const obstacles_t& message, int max_message_bytes) 
   if (message.getEncodedSize() > max_message_bytes) return kObstaclesSize;
   const bool has_height = std::isnan(message.datum_ellipsoid_height_m) || IsWithin(message.datum_ellipsoid_height_m, kMaxDatumHeightM);
   const bool has_datum = IsWithin(message.datum_latitude_deg, 90.0) && IsWithin(message.datum_longitude_deg, 180.0) && has_height;
+  const bool is_relative =
+      std::isnan(message.datum_latitude_deg) && std::isnan(message.datum_longitude_deg) && message.datum_ellipsoid_height_m >= 1.0;
   if (!has_datum && !std::isnan(message.datum_latitude_deg)) return kObstaclesNumber;
   std::int32_t last_id = 0;
   for (const auto& obstacle : message.obstacles) {
@@ -272,7 +276,8 @@ std::optional<Fault> FaultOf(const obstacles_t& message, int max_message_bytes) 
     last_id = obstacle.id;
     const auto obstacle_time = UtimeFromWire(obstacle.utime_us);
     if (!obstacle_time || *obstacle_time < *time || *obstacle_time > *end_time) return kObstaclesTime;
-    if (!AreNumbersGood(obstacle) || (obstacle.status == obstacle_t::STATUS_OK && !has_datum)) return kObstaclesNumber;
+    if (!AreNumbersGood(obstacle, is_relative)) return kObstaclesNumber;
+    if (obstacle.status == obstacle_t::STATUS_OK && !has_datum && !is_relative) return kObstaclesNumber;
     if (!IsCovariance(obstacle.covariance_m2) || !IsCovariance(obstacle.covariance_relative_m2)) return kObstaclesCovariance;
   }
   return std::nullopt;

@@ -48,15 +48,20 @@ bool IsCovariance(const double (&covariance)[9][9]) {
 
 double OrZero(double value) { return std::isnan(value) ? 0.0 : value; }
 
+bool IsDatum(const Datum& datum, bool is_relative) {
+  if (is_relative) return datum.IsRelative() && datum.ellipsoid_height_m >= 1.0;
+  return IsAtMost(datum.latitude_deg, 90.0) && IsAtMost(datum.longitude_deg, 180.0) && IsAtMost(OrZero(datum.ellipsoid_height_m), kMaxHeightM);
+}
+
 }  // namespace
 
 std::variant<Pose, Fault> ToPose(const pose_t& message) {
   const auto time = UtimeFromWire(message.utime_us);
   if (!time || message.utime_us % kPoseGridUs != 0) return kPoseTime;
-  if (message.status < pose_t::STATUS_OK || message.status > pose_t::STATUS_COASTING) return kPoseStatus;
+  if (message.status < pose_t::STATUS_OK || message.status > pose_t::STATUS_RELATIVE_TO_BOAT) return kPoseStatus;
   Pose pose;
   pose.time = *time;
-  pose.is_placed = message.status == pose_t::STATUS_OK || message.status == pose_t::STATUS_COASTING;
+  pose.is_placed = IsPlaced(message);
   pose.datum = {message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
   pose.position_map_m = {message.position_map_m[0], message.position_map_m[1], message.position_map_m[2]};
   pose.heading_rad = message.heading_rad;
@@ -66,8 +71,7 @@ std::variant<Pose, Fault> ToPose(const pose_t& message) {
   if (!IsAtMost(pose.pitch_rad, kPi) || !IsAtMost(pose.roll_rad, kPi) || !IsAtMost(pose.heave_m, kMaxHeaveM)) return kPoseNumber;
   if (pose.is_placed) {
     const auto& p_m = message.position_map_m;
-    if (!IsAtMost(p_m[0], kMaxMapM) || !IsAtMost(p_m[1], kMaxMapM) || !IsAtMost(p_m[2], kMaxMapM) || !IsAtMost(pose.datum.latitude_deg, 90.0) ||
-        !IsAtMost(pose.datum.longitude_deg, 180.0) || !IsAtMost(OrZero(pose.datum.ellipsoid_height_m), kMaxHeightM) ||
+    if (!IsAtMost(p_m[0], kMaxMapM) || !IsAtMost(p_m[1], kMaxMapM) || !IsAtMost(p_m[2], kMaxMapM) || !IsDatum(pose.datum, IsRelative(message)) ||
         !(pose.heading_rad >= 0.0 && pose.heading_rad <= kTwoPi)) {
       return kPoseNumber;
     }

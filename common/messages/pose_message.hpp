@@ -17,6 +17,15 @@ inline constexpr Fault kPoseCovariance = "pose_refused_covariance";  // not a co
 
 inline constexpr std::array kPoseFaults{kPoseTime, kPoseStatus, kPoseNumber, kPoseCovariance};
 
+/// Position and heading are known in a frame that is not on the earth.
+constexpr bool IsRelative(const pose_t& pose) {
+  return pose.status == pose_t::STATUS_RELATIVE || pose.status == pose_t::STATUS_RELATIVE_COASTING || pose.status == pose_t::STATUS_RELATIVE_TO_BOAT;
+}
+/// Position and heading are known on the earth.
+constexpr bool IsOnEarth(const pose_t& pose) { return pose.status == pose_t::STATUS_OK || pose.status == pose_t::STATUS_COASTING; }
+/// In either.
+constexpr bool IsPlaced(const pose_t& pose) { return IsOnEarth(pose) || IsRelative(pose); }
+
 /// The whole message is valid, or it is refused.
 std::variant<Pose, Fault> ToPose(const pose_t& message);
 

@@ -68,9 +68,14 @@ inline constexpr std::array kAlertEnd{Word{alert_t::END_NONE, ""},     Word{aler
 inline constexpr std::array kAlertState{Word{alert_t::STATE_ACTIVE, "active"}, Word{alert_t::STATE_ACKNOWLEDGED, "acknowledged"},
                                         Word{alert_t::STATE_RECTIFIED, "rectified"}, Word{alert_t::STATE_CLEARED, "cleared"}};
 
-inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"}, Word{pose_t::STATUS_NO_HEADING, "no_heading"},
-                                        Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"},
-                                        Word{pose_t::STATUS_COASTING, "coasting"}};
+inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"},
+                                        Word{pose_t::STATUS_NO_HEADING, "no_heading"},
+                                        Word{pose_t::STATUS_NO_POSITION, "no_position"},
+                                        Word{pose_t::STATUS_UNKNOWN, "unknown"},
+                                        Word{pose_t::STATUS_COASTING, "coasting"},
+                                        Word{pose_t::STATUS_RELATIVE, "relative"},
+                                        Word{pose_t::STATUS_RELATIVE_COASTING, "relative_coasting"},
+                                        Word{pose_t::STATUS_RELATIVE_TO_BOAT, "relative_to_boat"}};
 
 /// The source of POSE's heading: a compass, an attitude sensor, or only the course over ground.
 inline constexpr std::array kHeadingSource{Word{pose_t::HEADING_NONE, "none"}, Word{pose_t::HEADING_HDT, "hdt"}, Word{pose_t::HEADING_PASHR, "pashr"},

@@ -24,6 +24,11 @@ std::string_view PoseText(std::int32_t pose_status) {
       return "no position and no heading: obstacles in the vessel frame only";
     case pose_t::STATUS_COASTING:
       return "position or heading is only propagated: obstacles drift as their covariance says, see HEALTH of navigator";
+    case pose_t::STATUS_RELATIVE:
+    case pose_t::STATUS_RELATIVE_COASTING:
+      return "no position on the earth: obstacles are in a frame of their own, which began where the boat was";
+    case pose_t::STATUS_RELATIVE_TO_BOAT:
+      return "no position, and nothing stands in sight: obstacles are relative to the boat, as if it lay still";
     default:
       return {};
   }
@@ -66,7 +71,7 @@ void Service::OnPose(const pose_t& message) {
 
 // A voyage may end far from its datum: the first place in it counts.
 void Service::CheckDatum(const Pose& pose) {
-  if (!pose.is_placed || (checked_datum_ && checked_datum_->IsSameAs(pose.datum))) return;
+  if (!pose.is_placed || pose.datum.IsRelative() || (checked_datum_ && checked_datum_->IsSameAs(pose.datum))) return;
   checked_datum_ = pose.datum;
   datum_complaint_.clear();
   if (!datum_ || datum_->latitude_deg != pose.datum.latitude_deg || datum_->longitude_deg != pose.datum.longitude_deg) return;
@@ -105,7 +110,7 @@ HealthReport Service::Report() const {
   } else {
     const auto status = newest_pose_status_.value_or(pose_t::STATUS_OK);
     if (const auto text = PoseText(status); !text.empty()) report.Degrade(text);
-    const bool is_placed = status == pose_t::STATUS_OK || status == pose_t::STATUS_COASTING;
+    const bool is_placed = status != pose_t::STATUS_NO_HEADING && status != pose_t::STATUS_NO_POSITION && status != pose_t::STATUS_UNKNOWN;
     const auto timeout = georeferencer_.last_timeout();
     const bool is_late = timeout && (!now_ || *now_ - *timeout < kInputSilence);
     if (is_placed && is_late) report.Degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");

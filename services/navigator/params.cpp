@@ -102,6 +102,7 @@ class InputsReader {
 
   void ReadInput(const config::NavigationInput& input, Params& params) {
     RequireOfInput(IsSourceName(input.name()), "name must be 1 to 32 characters of a to z and 0 to 9");
+    RequireOfInput(input.name() != kOdometerSource, "is the name of LIDAR_ODOMETRY in NAV_RAW: give it another");
     RequireOfInput(names_.insert(input.name()).second, "the name stands twice");
     const int num_kinds = static_cast<int>(input.has_serial()) + static_cast<int>(input.has_udp()) + static_cast<int>(input.has_tcp()) +
                           static_cast<int>(input.has_gpsd()) + static_cast<int>(input.has_text_log());
@@ -216,6 +217,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   const auto& message = *loaded;
   params.reads_nav_raw = message.source() == config::Navigator::LOG;
   params.use_lidar_nmea = message.use_lidar_nmea();
+  params.navigator.use_lidar_odometry = message.use_lidar_odometry();
 
   auto& navigator = params.navigator;
   navigator.max_sentence_latency = ToMicroseconds(message.max_sentence_latency_s());

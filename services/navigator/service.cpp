@@ -24,8 +24,13 @@ std::string InSeconds(std::chrono::microseconds duration) {
 Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(params), navigator_(params.navigator) {
   if (params_.reads_nav_raw) {
     bus::Subscribe<nav_raw_t>(bus_, bus::kNavRaw, [this](const nav_raw_t& message) { OnNavRaw(message); });
-  } else if (params_.use_lidar_nmea) {
+    return;
+  }
+  if (params_.use_lidar_nmea) {
     bus::Subscribe<lidar_nmea_t>(bus_, bus::kLidarNmea, [this](const lidar_nmea_t& message) { OnLidarNmea(message); });
+  }
+  if (params_.navigator.use_lidar_odometry) {
+    bus::Subscribe<lidar_odometry_t>(bus_, bus::kLidarOdometry, [this](const lidar_odometry_t& message) { OnLidarOdometry(message); });
   }
 }
 
@@ -87,6 +92,16 @@ void Service::OnLidarNmea(const lidar_nmea_t& message) {
   PublishAndConsume(sequencer_.OnLidarSentence(*arrival, message.sentence));
 }
 
+void Service::OnLidarOdometry(const lidar_odometry_t& message) {
+  const auto motion = ToMotion(message);
+  if (!motion) {
+    ++counts_["lidar_odometry_bad"];
+    return;
+  }
+  // Where the earth is known it would only fill the log.
+  if (navigator_.WantsOdometry()) PublishAndConsume(sequencer_.OnOdometry(motion->end, ToSentence(*motion)));
+}
+
 void Service::OnNavRaw(const nav_raw_t& message) {
   const auto result = ToItem(message);
   if (const auto* refusal = std::get_if<Refusal>(&result)) return counts_.Add(*refusal);
@@ -132,6 +147,11 @@ HealthReport Service::Report() const {
   if (!filter.last_fix_arrival()) add("no position fix yet");
   if (!pose || (pose->heading_source == HeadingSource::kNone && !filter.has_had_heading())) add("no heading");
   if (pose && pose->heading_source == HeadingSource::kCourse) add("heading is only the course over ground: no compass or attitude sensor");
+  if (pose && pose->status == PoseStatus::kRelativeToBoat) {
+    add("POSE is relative to the boat: no position, and nothing that stands in sight; its own motion counts as none");
+  } else if (pose && (pose->status == PoseStatus::kRelative || pose->status == PoseStatus::kRelativeCoasting)) {
+    add("POSE is relative: it began where the boat was, and its way is by the lidar");
+  }
   if (!filter.datum_complaint().empty()) add(filter.datum_complaint());
   if (const auto off = navigator_.host_minus_utc(); off != std::chrono::microseconds(0)) {
     add("clock of this computer is off UTC by " + InSeconds(off));

@@ -12,6 +12,7 @@
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
 #include "lookout/lidar_nmea_t.hpp"
+#include "lookout/lidar_odometry_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "services/navigator/core/item_sequencer.hpp"
 #include "services/navigator/core/lines.hpp"
@@ -52,6 +53,7 @@ class Service {
  private:
   void OnLines(Utime arrival, const DatagramLines& lines, const std::string& source);
   void OnLidarNmea(const lidar_nmea_t& message);
+  void OnLidarOdometry(const lidar_odometry_t& message);
   void OnNavRaw(const nav_raw_t& message);
   void PublishAndConsume(const std::vector<Item>& items);
   void Consume(const Item& item);
@@ -68,8 +70,9 @@ class Service {
   std::int64_t attitude_seq_ = 0;
   std::int64_t pose_seq_ = 0;
 
-  static constexpr auto kCountNames = std::to_array<std::string_view>({"no_start", "too_long", "not_printable", "cut_off", "bad_host_time",
-                                                                       "lidar_nmea_bad", kRawTime, kRawKind, kRawText, kRawImu, "nav_raw_backwards"});
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"no_start", "too_long", "not_printable", "cut_off", "bad_host_time", "lidar_nmea_bad", "lidar_odometry_bad",
+                                       kRawTime, kRawKind, kRawText, kRawImu, "nav_raw_backwards"});
   Counts<kCountNames> counts_;
 };
 

@@ -24,7 +24,8 @@ Message Begin(const Measured& measured, std::int64_t seq, std::int64_t raw_seq) 
 }
 
 static_assert(static_cast<int>(ItemKind::kStart) == nav_raw_t::KIND_START && static_cast<int>(ItemKind::kEnd) == nav_raw_t::KIND_END);
-static_assert(static_cast<int>(PoseStatus::kUnknown) == pose_t::STATUS_UNKNOWN && static_cast<int>(HeadingSource::kCourse) == pose_t::HEADING_COURSE);
+static_assert(static_cast<int>(PoseStatus::kRelativeToBoat) == pose_t::STATUS_RELATIVE_TO_BOAT &&
+              static_cast<int>(HeadingSource::kCourse) == pose_t::HEADING_COURSE);
 static_assert(static_cast<int>(FixQuality::kSimulator) == gnss_fix_t::QUALITY_SIMULATOR);
 
 // rad/s and m/s2: beyond what any strapdown sensor of a boat measures (100 g, 160 turns a second).
@@ -67,6 +68,22 @@ std::variant<Item, Refusal> ToItem(const nav_raw_t& message) {
     item.imu = {Eigen::Vector3d::Map(sample.angular_velocity_radps), Eigen::Vector3d::Map(sample.specific_force_mps2)};
   }
   return item;
+}
+
+std::optional<OdometryMotion> ToMotion(const lidar_odometry_t& message) {
+  const auto begin = UtimeFromWire(message.begin_utime_us);
+  const auto end = UtimeFromWire(message.utime_us);
+  if (!begin || !end || *end < *begin) return std::nullopt;
+  OdometryMotion motion{*begin, *end, message.status == lidar_odometry_t::STATUS_OK};
+  if (motion.is_known) {
+    motion.displacement_m = Eigen::Vector2d::Map(message.displacement_m);
+    motion.turn_rad = message.turn_rad;
+    using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    motion.covariance = RowMajor::Map(&message.covariance[0][0]);
+    if (!motion.displacement_m.allFinite() || !std::isfinite(motion.turn_rad) || !motion.covariance.allFinite()) return std::nullopt;
+  }
+  // What a reader of NAV_RAW would refuse does not enter it.
+  return ParseOdometry(ToSentence(motion));
 }
 
 gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq) {

@@ -2,15 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <variant>
 
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
+#include "lookout/lidar_odometry_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/core/item.hpp"
 #include "services/navigator/core/measurement.hpp"
+#include "services/navigator/core/odometry.hpp"
 #include "services/navigator/core/pose.hpp"
 
 namespace lookout::navigator {
@@ -25,6 +28,9 @@ inline constexpr Refusal kRawImu = "nav_raw_bad_imu";    // not as many samples 
 
 nav_raw_t ToMessage(const Item& item);
 std::variant<Item, Refusal> ToItem(const nav_raw_t& message);
+
+/// @return nullopt where a time or a number cannot be
+std::optional<OdometryMotion> ToMotion(const lidar_odometry_t& message);
 
 gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq);
 attitude_t ToMessage(const Attitude& attitude, std::int64_t seq, std::int64_t raw_seq);

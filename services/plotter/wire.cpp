@@ -111,6 +111,8 @@ std::variant<TracksPart, Fault> ToTracksPart(const tracks_t& message) {
   if (!messages::IsWellFormed(message) || message.num_parts > messages::kMaxParts) return kTracksParts;
   TracksPart part{*time, *begin, {}};
   const Datum datum{message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
+  // Targets of a frame that is not on the earth have no place that a chart could show.
+  if (datum.IsRelative()) return part;
   // Tentative ones come first, with ids of -2 and below; 0 and -1 are none.
   std::int64_t last_id = std::numeric_limits<std::int64_t>::min();
   for (const auto& track : message.tracks) {
@@ -164,6 +166,11 @@ OwnShip ToOwnShip(const pose_t& message) {
   OwnShip own;
   own.time = Utime(std::chrono::microseconds(message.utime_us));
   own.is_estimated = message.status == pose_t::STATUS_COASTING;
+  // In a frame of its own neither heading nor course are of the earth.
+  if (message.status >= pose_t::STATUS_RELATIVE) {
+    if (IsOnEarth(message.latitude_deg, message.longitude_deg)) own.position = {message.latitude_deg, message.longitude_deg};
+    return own;
+  }
   const bool has_position = message.status != pose_t::STATUS_NO_POSITION && message.status != pose_t::STATUS_UNKNOWN;
   const bool has_heading = message.status != pose_t::STATUS_NO_HEADING && message.status != pose_t::STATUS_UNKNOWN;
   // Course over ground that stands in for a heading is told as course only: a chart program would take it for a compass.

@@ -136,16 +136,20 @@ void CopyApproach(const ClosestApproach& approach, track_t& message) {
   message.bearing_drift_radps = ToFloat(approach.bearing_drift_radps);
 }
 
-track_t ToMessage(const Track& track, const LocalFrame& map, double own_up_m) {
+// @param map  nullopt: of a frame that is not on the earth
+track_t ToMessage(const Track& track, const std::optional<LocalFrame>& map, double own_up_m) {
   track_t message{};
   message.id = track.id;
   message.status = static_cast<std::int32_t>(track.status);
   message.kind = static_cast<std::int32_t>(track.kind);
   message.first_utime_us = ToUtimeUs(track.first);
   message.seen_utime_us = ToUtimeUs(track.seen);
-  const auto place = map.Reverse({track.position_m.x(), track.position_m.y(), own_up_m});
-  message.latitude_deg = place.latitude_deg;
-  message.longitude_deg = place.longitude_deg;
+  message.latitude_deg = message.longitude_deg = kNan;
+  if (map) {
+    const auto place = map->Reverse({track.position_m.x(), track.position_m.y(), own_up_m});
+    message.latitude_deg = place.latitude_deg;
+    message.longitude_deg = place.longitude_deg;
+  }
   for (int i = 0; i < 2; ++i) {
     message.position_map_m[i] = Canonical(track.position_m[i]);
     message.velocity_map_mps[i] = Canonical(track.velocity_mps[i]);
@@ -344,7 +348,7 @@ std::vector<tracks_t> ToMessages(const ScanLabel& scan, const Picture& picture, 
   parts[0].num_waterline = Split(waterline_m, parts[0].waterline_east_m, parts[0].waterline_north_m);
   int num_bytes = parts[0].getEncodedSize();
   if (!picture.tracks.empty()) {
-    const LocalFrame map = scan.datum.Map();
+    const auto map = scan.datum.IsRelative() ? std::nullopt : std::optional(scan.datum.Map());
     for (const auto& track : picture.tracks) {
       auto message = ToMessage(track, map, scan.own_up_m);
       const int size = message._getEncodedSizeNoHash();

@@ -2,6 +2,7 @@
 // real datagrams. LOOKOUT_PROOF_SECONDS sets the length of the data (default 4).
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -19,6 +20,7 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/log_file.hpp"
 #include "lookout/health_t.hpp"
+#include "lookout/pose_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "tests/support/live_bus.hpp"
 #include "tests/support/live_test.hpp"
@@ -33,7 +35,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 // Sources end first, so that what they send at their end still finds its takers.
-const std::vector<std::string> kFromSourceToLog{"lidar", "navigator", "segmenter", "georeferencer", "tracker", "recorder"};
+const std::vector<std::string> kFromSourceToLog{"lidar", "odometer", "navigator", "segmenter", "georeferencer", "tracker", "recorder"};
 
 int DataSeconds() {
   const char* text = std::getenv("LOOKOUT_PROOF_SECONDS");
@@ -76,11 +78,16 @@ Payloads WithoutWatchAlerts(Payloads log) {
 }
 
 // Every data message, byte for byte.
-void ExpectSameMessages(const Payloads& one, const Payloads& other) {
+// @param silent  channels on which nothing comes
+void ExpectSameMessages(const Payloads& one, const Payloads& other, const std::set<std::string>& silent = {}) {
   for (const auto& channel : bus::kChannels) {
     // Nobody was there to acknowledge, and the boat has one lidar.
     if (!channel.is_replayed || bus::HasSeveralPublishers(channel) || bus::IsOfSecondLidar(channel)) continue;
     const std::string name(channel.name);
+    if (silent.contains(name)) {
+      EXPECT_EQ(Count(one, name) + Count(other, name), 0) << name;
+      continue;
+    }
     ASSERT_GT(Count(one, name), 0) << name;
     EXPECT_EQ(Count(one, name), Count(other, name)) << name;
     EXPECT_TRUE(other.contains(name) && one.at(name) == other.at(name)) << name << " differs";
@@ -132,7 +139,7 @@ class Proof : public LiveTest {
         const auto until = std::chrono::steady_clock::now() + milliseconds(50);
         while (std::chrono::steady_clock::now() < until) lcm_->HandleOnce(milliseconds(10));
         // The live navigator never ends: it ticks.
-        num_silent = service == "lidar" || service == "navigator" || before == counts_ ? num_silent + 1 : 0;
+        num_silent = service == "lidar" || service == "odometer" || service == "navigator" || before == counts_ ? num_silent + 1 : 0;
       }
       EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
     }
@@ -143,12 +150,18 @@ class Proof : public LiveTest {
 
   fs::path log_;  // of the latest run
 
-  Payloads RunLive(const std::string& run) {
+  // @param has_navigation  false: the lidar alone is heard
+  Payloads RunLive(const std::string& run, bool has_navigation = true) {
     EnterRun(run, false);
+    const std::string sensors = has_navigation ? "config" : kDemoConfig.string();
+    if (!has_navigation) {
+      ReplaceIn("config/navigator.txtpb", "use_lidar_nmea: true", "use_lidar_nmea: false");
+      WriteFile("config/navigator.txtpb", ReadFile("config/navigator.txtpb") + "nmea_port: 10111\n");
+    }
     Start({"recorder", "tracker", "georeferencer", "segmenter"});
-    Start({"navigator", "lidar"});  // nobody misses their start marks
+    Start({"navigator", "odometer", "lidar"});  // nobody misses their start marks
     const auto sim = RunProgram(
-        {Bin("sim"), "--config", "config", "--scene", "lake", "--seed", "3", "--seconds", std::to_string(DataSeconds()), "--udp", "127.0.0.1"},
+        {Bin("sim"), "--config", sensors, "--scene", "lake", "--seed", "3", "--seconds", std::to_string(DataSeconds()), "--udp", "127.0.0.1"},
         "sim.out");
     EXPECT_EQ(sim.exit_code, 0) << sim.output;
     return StopAndRead();
@@ -160,7 +173,7 @@ class Proof : public LiveTest {
     WriteFile("config/tracker.txtpb", ReadFile("config/tracker.txtpb") + "wait_timeout_s: 20\n");
     ReplaceIn("config/georeferencer.txtpb", "pose_timeout_s: 0.5", "pose_timeout_s: 20");
     Start({"recorder", "tracker", "georeferencer", "segmenter"});
-    Start({"navigator", "lidar"});
+    Start({"navigator", "odometer", "lidar"});
     Child sim(
         {Bin("sim"), "--config", "config", "--scene", "lake", "--seed", "3", "--seconds", std::to_string(DataSeconds() + 2), "--udp", "127.0.0.1"},
         "sim.out");
@@ -236,6 +249,25 @@ TEST_F(Proof, WhatRanLiveComputesAgainToTheSameBytes) {
     const auto played = WithoutLoss([&](const std::string& attempt) { return RunPlayed("x" + speed + "-" + attempt, speed, log, live); });
     ExpectSameMessages(live, played);
   }
+}
+
+// A boat with a lidar and nothing else: tracks and alerts come, in a frame that began where the boat was.
+TEST_F(Proof, ALidarAloneGivesTracksAndComputesAgainToTheSameBytes) {
+  const auto live = WithoutLoss([this](const std::string& attempt) { return RunLive("alone-" + attempt, false); });
+  const auto log = log_;
+  ASSERT_FALSE(HasFailure());
+  std::size_t num_relative = 0;
+  for (const auto& bytes : live.at("POSE")) num_relative += bus::Decode<pose_t>(bytes).value().status == pose_t::STATUS_RELATIVE ? 1 : 0;
+  EXPECT_GT(num_relative, live.at("POSE").size() / 2);
+  const auto last = bus::Decode<tracks_t>(live.at("TRACKS").back()).value();
+  EXPECT_TRUE(std::ranges::any_of(last.tracks, [](const track_t& track) { return track.status == track_t::STATUS_CONFIRMED; }));
+  EXPECT_TRUE(std::isnan(last.datum_latitude_deg));
+  EXPECT_EQ(last.datum_ellipsoid_height_m, 1.0);
+
+  const auto replay = RunProgram({Bin("replay"), "--config", "config", "--in", log.string(), "--out", "again"}, "replay.out");
+  ASSERT_EQ(replay.exit_code, 0) << replay.output;
+  EXPECT_NE(replay.output.find("in a frame that began where the boat was"), std::string::npos) << replay.output;
+  ExpectSameMessages(live, ReadLog("again"), {"GNSS_FIX", "ATTITUDE"});
 }
 
 // At how many scans a process of the tracker began.

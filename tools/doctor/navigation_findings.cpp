@@ -100,6 +100,10 @@ Finding CheckHeading(const Observations& seen) {
                                "a GNSS compass, or an AHRS with heading (HDT, THS, PASHR, PTNTHTM, HDG with deviation and declination); its input "
                                "and role in navigator.txtpb") +
                            GpsdInWords(seen);
+  if (pose && pose->status >= pose_t::STATUS_RELATIVE && pose->heading_source == pose_t::HEADING_NONE) {
+    return Warning(kHeadingSubject, "none: POSE is relative, its bearings are from where the bow pointed at the start",
+                   "connect a compass or an attitude sensor; without one tracks have no place on the earth and plotters get nothing");
+  }
   if (!pose || pose->heading_source == pose_t::HEADING_NONE || !std::isfinite(pose->heading_rad)) {
     if (filter.use_course_as_heading) {
       return Warning(kHeadingSubject, "none: obstacles are placed in the vessel frame only; " + CourseInWords(filter.min_course_speed_mps), cure);

@@ -142,6 +142,9 @@ class PlacedRows {
 
   // Why there are none; empty where there are, or nobody knows why not.
   std::string Remark() const {
+    if (is_asked_ && num_placed_ > 0 && poses_.num_relative > 0) {
+      return "some or all rows have no latitude and longitude, as the earth was not known: " + poses_.RelativeInWords();
+    }
     const auto why = is_asked_ && num_placed_ == 0 ? poses_.WhyNotPlaced() : "";
     if (why.empty()) return "";
     return is_tracks_ ? "there are no tracks, as " + why + ": what is around the boat stands in the table obstacles, in the vessel frame"

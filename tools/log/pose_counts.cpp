@@ -1,9 +1,21 @@
 #include "tools/log/pose_counts.hpp"
 
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "common/messages/pose_message.hpp"
+
 namespace lookout::log {
 
 void PoseCounts::Add(const pose_t& pose) {
   ++num_poses;
+  if (messages::IsRelative(pose)) {
+    ++num_relative;
+    std::isfinite(pose.latitude_deg) ? ++num_without_heading : ++num_without_position;
+    if (pose.status == pose_t::STATUS_RELATIVE_TO_BOAT) ++num_to_boat;
+    return;
+  }
   const bool knows_nothing = pose.status == pose_t::STATUS_UNKNOWN;
   if (knows_nothing || pose.status == pose_t::STATUS_NO_HEADING) ++num_without_heading;
   if (knows_nothing || pose.status == pose_t::STATUS_NO_POSITION) ++num_without_position;
@@ -21,6 +33,19 @@ std::string PoseCounts::WhyNotPlaced() const {
   if (num_without_position == num_poses) return "POSE knows no position" + share(num_poses);
   if (num_without_heading == num_poses) return "POSE knows no heading" + share(num_poses);
   return "POSE knows no position" + share(num_without_position) + " or no heading" + share(num_without_heading);
+}
+
+std::string PoseCounts::RelativeInWords() const {
+  if (num_relative == 0) return "";
+  constexpr double kPoseS = 0.02;
+  const auto seconds = [](std::int64_t count) {
+    std::array<char, 32> text{};
+    const int length = std::snprintf(text.data(), text.size(), "%.1f", static_cast<double>(count) * kPoseS);
+    return std::string(text.data(), static_cast<std::size_t>(length));
+  };
+  return "for " + seconds(num_relative - num_to_boat) + " of " + seconds(num_poses) +
+         " s they are in a frame that began where the boat was, its own motion by the lidar; for " + seconds(num_to_boat) +
+         " s nothing that stands was in sight, and they are relative to the boat as if it lay still";
 }
 
 }  // namespace lookout::log

@@ -10,9 +10,11 @@ namespace lookout::log {
 
 struct PoseCounts {
   std::int64_t num_poses = 0;
-  std::int64_t num_placed = 0;  // position and heading are known
+  std::int64_t num_placed = 0;  // position and heading are known on the earth
   std::int64_t num_without_heading = 0;
   std::int64_t num_without_position = 0;
+  std::int64_t num_relative = 0;   // in a frame of its own; counted as without position or heading, too
+  std::int64_t num_to_boat = 0;    // of these, with an own motion that counts as none
   std::int64_t num_by_course = 0;  // placed, and the heading is course over ground
   std::int64_t first_placed_us = 0;
   std::int64_t last_placed_us = 0;
@@ -21,6 +23,9 @@ struct PoseCounts {
 
   /// @return "no POSE came", "POSE knows no heading (3000 of 3000)", ...; empty where one knew position and heading
   std::string WhyNotPlaced() const;
+
+  /// @return "29.5 of 30.0 s relative to where the boat was at the start, by the lidar, 0.5 s without a known own motion"; empty where none was so
+  std::string RelativeInWords() const;
 };
 
 }  // namespace lookout::log

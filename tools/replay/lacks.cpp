@@ -56,6 +56,10 @@ std::string NoSentences(const Seen& seen) {
 // Consequences where nothing is placed.
 std::string NoPlaceMeans(const Seen& seen) {
   if (!seen.wants_tracks || seen.num_scans == 0) return "";
+  if (seen.poses.num_relative > 0) {
+    return ": obstacles, tracks, closest approach and alerts are there, but without a place on the earth: " + seen.poses.RelativeInWords() +
+           "; charts, KML and GPX stay empty. For places give the boat a GNSS receiver and a compass";
+  }
   return ": obstacles are known in the vessel frame alone (range and bearing), there are no tracks and no closest approach; the guard zone works";
 }
 
@@ -92,6 +96,10 @@ std::vector<std::string> Lacks(const Seen& seen) {
         fmt::format("heading is course over ground in all {} poses that have one (no compass): at rest, adrift and astern it is not where "
                     "the bow points",
                     poses.num_placed));
+  }
+  if (poses.num_relative > 0) {
+    lines.push_back("position and heading on the earth were known for a part of the run only; of the rest, obstacles and tracks have no latitude: " +
+                    poses.RelativeInWords());
   }
   if (!seen.wants_tracks || seen.num_scans == 0) return lines;
   const auto num_obstacles = seen.num_obstacles_placed + seen.num_obstacles_unplaced;

@@ -58,6 +58,18 @@ void AddUpstream(std::string_view name, const ServiceRows& services, std::vector
   }
 }
 
+// Whether others read what the service publishes, and none of them runs.
+bool IsOfNoUse(const bus::ServiceRow& service, const ServiceRows& services, const std::vector<std::string>& stopped) {
+  bool has_reader = false;
+  for (const auto& reader : services) {
+    const auto inputs = Inputs(reader);
+    if (std::ranges::none_of(inputs, [&service](const auto* input) { return bus::Publishes(service, *input); })) continue;
+    if (!Holds(stopped, reader.name)) return false;
+    has_reader = true;
+  }
+  return has_reader;
+}
+
 // Services that do not run with --from this channel.
 std::vector<std::string> StoppedBy(const std::string& from, const ServiceRows& services) {
   std::vector<std::string> stopped;
@@ -66,6 +78,11 @@ std::vector<std::string> StoppedBy(const std::string& from, const ServiceRows& s
       if (input->name != from || input->is_raw) continue;
       for (const auto publisher : PublishersOf(*input, services)) AddUpstream(publisher, services, stopped);
     }
+  }
+  // In the reverse order of the data: what one publishes only for a stopped one is of no use.
+  for (auto service = services.rbegin(); service != services.rend(); ++service) {
+    if (!Holds(stopped, service->name) && bus::RawOutput(*service) == nullptr && IsOfNoUse(*service, services, stopped))
+      stopped.emplace_back(service->name);
   }
   return stopped;
 }

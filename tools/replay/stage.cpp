@@ -10,6 +10,8 @@
 #include "services/lidar/sources.hpp"
 #include "services/navigator/params.hpp"
 #include "services/navigator/service.hpp"
+#include "services/odometer/params.hpp"
+#include "services/odometer/service.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/segmenter/service.hpp"
 #include "services/tracker/params.hpp"
@@ -175,6 +177,7 @@ const std::vector<StageFactory>& StageFactories() {
        },
        Make<LidarStage>},
       {"segmenter", [](const fs::path& folder) { segmenter::LoadParams(folder); }, Make<PlainStage<segmenter::Service, segmenter::LoadLanes>>},
+      {"odometer", [](const fs::path& folder) { odometer::LoadParams(folder); }, Make<PlainStage<odometer::Service, odometer::LoadParams>>},
       {"navigator", [](const fs::path& folder) { navigator::LoadParams(folder); }, Make<NavigatorStage>},
       {"georeferencer", [](const fs::path& folder) { georeferencer::LoadParams(folder); }, Make<GeoreferencerStage>},
       {"tracker", [](const fs::path& folder) { tracker::LoadParams(folder); }, Make<TrackerStage>}};

@@ -111,11 +111,15 @@ Span OwnShipSpan(const OwnShip& own, TimePoint now, int width) {
   if (is_pose_old) cells.push_back(fmt::format(" (no POSE for {:.0f} s)", Seconds(now - own.pose_time)));
   const auto degrees = [](double value) { return " " + (std::abs(value) <= 360.0 ? fmt::format("{:.6f}", value) : "-"); };
   const bool has_position = std::isfinite(pose.latitude_deg) && std::isfinite(pose.longitude_deg);
-  cells.push_back(has_position ? degrees(pose.latitude_deg) + degrees(pose.longitude_deg) : " without position");
+  const bool is_relative = pose.status >= pose_t::STATUS_RELATIVE;
+  cells.push_back(has_position  ? degrees(pose.latitude_deg) + degrees(pose.longitude_deg)
+                  : is_relative ? " relative: no position on the earth"
+                                : " without position");
   // The course that stands in for a heading must not look like a compass.
   const bool is_course = pose.heading_source == pose_t::HEADING_COURSE;
-  cells.push_back((is_course ? "  course " : "  heading ") + Degrees(pose.heading_rad));
+  // Without a compass the heading of a relative frame is from where the bow pointed at its begin.
   const bool has_source = pose.heading_source != pose_t::HEADING_NONE;
+  cells.push_back((is_course ? "  course " : is_relative && !has_source ? "  from start " : "  heading ") + Degrees(pose.heading_rad));
   if (has_source) cells.push_back(is_course ? " no compass" : " " + std::string(words::WordOf(words::kHeadingSource, pose.heading_source)));
   const auto velocity_mps = VelocityHere(pose);
   const double speed_mps = velocity_mps.norm();

@@ -105,9 +105,11 @@ void PlaceOnEarth(const Segment& segment, const std::vector<Vector3d>& outline_m
   const Vector3d center_map_m = pose.position_map_m + pose.R_map_here * FootprintCenter(outline_here_m);
   const Vector3d center_vessel_m = TransformMapVessel(pose).inverse() * center_map_m;
   const Datum& datum = pose.datum;
-  const GeodeticPlace place = datum.Map().Reverse(center_map_m);
-  obstacle.latitude_deg = place.latitude_deg;
-  obstacle.longitude_deg = place.longitude_deg;
+  if (!datum.IsRelative()) {
+    const GeodeticPlace place = datum.Map().Reverse(center_map_m);
+    obstacle.latitude_deg = place.latitude_deg;
+    obstacle.longitude_deg = place.longitude_deg;
+  }
   obstacle.status = ObstacleStatus::kOk;
   obstacle.position_map_m = center_map_m.head<2>();
   obstacle.center_vessel_m = center_vessel_m.head<2>();

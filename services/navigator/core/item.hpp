@@ -24,5 +24,7 @@ struct Item {
 
 inline constexpr char kUdpSource[] = "udp";
 inline constexpr char kLidarSource[] = "lidar";
+/// LIDAR_ODOMETRY, each as a line (core/odometry.hpp).
+inline constexpr char kOdometerSource[] = "odometer";
 
 }  // namespace lookout::navigator

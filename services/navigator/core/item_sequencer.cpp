@@ -29,6 +29,11 @@ Item ItemSequencer::Start(Utime time) {
 }
 
 std::vector<Item> ItemSequencer::AdvanceTo(Utime host_time) {
+  has_host_clock_ = true;
+  return Advance(host_time);
+}
+
+std::vector<Item> ItemSequencer::Advance(Utime host_time) {
   if (!last_) return {Start(host_time)};
   if (host_time < last_host_time_ - kMaxSetBack || host_time < *last_ - kMaxStepBack) {
     ++num_clock_set_back_;
@@ -72,6 +77,14 @@ std::vector<Item> ItemSequencer::OnLidarSentence(Utime arrival, const std::strin
     return items;
   }
   items.push_back(Make(arrival, ItemKind::kSentence, kLidarSource, sentence));
+  return items;
+}
+
+std::vector<Item> ItemSequencer::OnOdometry(Utime end, const std::string& sentence) {
+  std::vector<Item> items;
+  if (!has_host_clock_) items = Advance(end);
+  if (!last_) return {};  // behind the end mark
+  items.push_back(Make(last_host_time_, ItemKind::kSentence, kOdometerSource, sentence));
   return items;
 }
 

@@ -36,6 +36,11 @@ class ItemSequencer {
   /// A sentence out of the lidar. It comes late, in a bundle, so it does not move the ticks.
   std::vector<Item> OnLidarSentence(Utime arrival, const std::string& sentence);
 
+  /// A motion of the odometer, at the time of the host clock so far.
+  ///
+  /// @param end  of the motion: the time where nobody calls AdvanceTo, as in a log
+  std::vector<Item> OnOdometry(Utime end, const std::string& sentence);
+
   /// @return END after the ticks until then; nothing when nothing came before. Later items begin a new sequence.
   std::vector<Item> Finish(Utime host_time);
 
@@ -44,10 +49,12 @@ class ItemSequencer {
  private:
   Item Make(Utime time, ItemKind kind, const std::string& source = {}, const std::string& sentence = {});
   Item Start(Utime time);
+  std::vector<Item> Advance(Utime host_time);
 
   std::optional<Utime> last_;  // time of the last item
   Utime last_host_time_{};     // of the host clock itself, since the start; a lidar's sentence may be ahead of it
   Utime next_tick_{};
+  bool has_host_clock_ = false;  // AdvanceTo or OnLines told its time
   std::int64_t next_seq_ = 0;
   std::int64_t num_clock_set_back_ = 0;
   std::int64_t num_stale_sentences_ = 0;

@@ -12,10 +12,11 @@ Utime CeilToPose(Utime time) { return std::chrono::ceil<PosePeriods>(time); }
 
 }  // namespace
 
-Navigator::Navigator(const NavigatorParams& params) : interpreter_(params), filter_(params.filter) {}
+Navigator::Navigator(const NavigatorParams& params) : params_(params), interpreter_(params), filter_(params.filter) {}
 
 NavigatorOutput Navigator::Consume(const Item& item) {
   if (item.kind == ItemKind::kStart) Reset();
+  if (!time_) relative_.Begin(item.time);
   if (!time_) next_pose_ = CeilToPose(item.time);
   if (time_ && item.time - *time_ > kMaxGap) {
     ++num_time_jumps_;
@@ -23,7 +24,11 @@ NavigatorOutput Navigator::Consume(const Item& item) {
   }
   time_ = item.time;
   NavigatorOutput output;
-  if (item.kind == ItemKind::kSentence) OnSentence(item, output);
+  if (item.kind == ItemKind::kSentence && item.source == kOdometerSource) {
+    OnOdometry(item);
+  } else if (item.kind == ItemKind::kSentence) {
+    OnSentence(item, output);
+  }
   if (item.imu) filter_.Add(InVesselFrame(item.time, *item.imu));
   if (item.kind == ItemKind::kTick) filter_.AdvanceTo(item.time);
   while (next_pose_ <= item.time) AppendPose(output);
@@ -45,12 +50,23 @@ void Navigator::Reset() {
 }
 
 void Navigator::AppendPose(NavigatorOutput& output) {
-  last_pose_ = filter_.At(next_pose_);
+  last_pose_ = relative_.At(filter_.At(next_pose_), params_.filter.unmeasured_tilt_sd_rad);
   output.poses.push_back(*last_pose_);
   next_pose_ += kPosePeriod;
 }
 
+void Navigator::OnOdometry(const Item& item) {
+  const auto motion = ParseOdometry(item.sentence);
+  if (!motion) {
+    ++num_bad_motions_;
+    return;
+  }
+  ++num_motions_;
+  relative_.Add(*motion);
+}
+
 void Navigator::OnSentence(const Item& item, NavigatorOutput& output) {
+  relative_.NoteSentence();
   const auto reading = interpreter_.Read(item);
   if (reading.fix) filter_.Add(*reading.fix);
   if (reading.velocity) filter_.Add(*reading.velocity);
@@ -64,6 +80,9 @@ std::vector<Counter> Navigator::counters() const {
   auto counters = interpreter_.counters();
   filter_.counts().AppendTo(counters);
   counters.push_back({"time_jump", num_time_jumps_});
+  counters.push_back({"odometry_used", num_motions_});
+  counters.push_back({"odometry_bad", num_bad_motions_});
+  counters.push_back({"relative_frames", relative_.num_frames()});
   return counters;
 }
 

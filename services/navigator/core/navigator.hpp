@@ -11,11 +11,13 @@
 #include "services/navigator/core/interpreter.hpp"
 #include "services/navigator/core/item.hpp"
 #include "services/navigator/core/measurement.hpp"
+#include "services/navigator/core/relative_frame.hpp"
 
 namespace lookout::navigator {
 
 struct NavigatorParams : InterpreterParams {
   FilterParams filter;
+  bool use_lidar_odometry = true;
 };
 
 /// Results of one item.
@@ -42,6 +44,10 @@ class Navigator {
   /// End of input that has no end mark: the pose that an end mark would have added.
   NavigatorOutput Flush();
 
+  /// Whether a motion of the odometer would be used now: where position or heading have not been known for a while.
+  bool WantsOdometry() const { return time_ && params_.use_lidar_odometry && relative_.Wants(*time_); }
+  const RelativeFrame& relative_frame() const { return relative_; }
+
   /// Time of the last item.
   const std::optional<Utime>& time() const { return time_; }
   /// The last pose since the start mark.
@@ -54,12 +60,17 @@ class Navigator {
   std::vector<Counter> counters() const;
 
  private:
+  void OnOdometry(const Item& item);
   void OnSentence(const Item& item, NavigatorOutput& output);
   void AppendPose(NavigatorOutput& output);
   void Reset();
 
+  NavigatorParams params_;
   Interpreter interpreter_;
   PoseFilter filter_;
+  RelativeFrame relative_;
+  std::int64_t num_motions_ = 0;
+  std::int64_t num_bad_motions_ = 0;
   std::optional<Pose> last_pose_;
   std::optional<Utime> time_;
   Utime next_pose_{};

@@ -10,7 +10,16 @@ namespace lookout::navigator {
 
 /// The numbers of pose_t.
 /// kCoasting: as kOk, but no fix or no heading has come for about a second: propagated, with growing covariance.
-enum class PoseStatus { kOk = 0, kNoHeading = 1, kNoPosition = 2, kUnknown = 3, kCoasting = 4 };
+enum class PoseStatus {
+  kOk = 0,
+  kNoHeading = 1,
+  kNoPosition = 2,
+  kUnknown = 3,
+  kCoasting = 4,
+  kRelative = 5,
+  kRelativeCoasting = 6,
+  kRelativeToBoat = 7
+};
 enum class HeadingSource { kNone = 0, kHdt = 1, kPashr = 2, kCourse = 3 };
 
 /// Position, velocity (east, north, up), roll, pitch, heading.
@@ -21,7 +30,7 @@ struct Pose {
   PoseStatus status = PoseStatus::kUnknown;
   HeadingSource heading_source = HeadingSource::kNone;
   bool has_attitude = false;
-  GeodeticPlace datum{kNan, kNan, kNan};  // origin of the map frame
+  GeodeticPlace datum{kNan, kNan, kNan};  // origin of the map frame; of a relative pose: see pose_t
   double latitude_deg = kNan;             // of the reference point
   double longitude_deg = kNan;
   double ellipsoid_height_m = kNan;

@@ -52,6 +52,27 @@ TEST(Lacks, NamesWhatIsMissingWithoutAPositionAndWhatWorksAllTheSame) {
   EXPECT_NE(Said(seen).find("there is no POSE: obstacles are known in the vessel frame"), std::string::npos) << Said(seen);
 }
 
+// What follows, for how long, and what to do.
+TEST(Lacks, SaysThatTracksAreRelative) {
+  auto seen = Whole();
+  seen.poses = {};
+  for (int i = 0; i < 25; ++i) seen.poses.Add(PoseOf(pose_t::STATUS_UNKNOWN));
+  for (int i = 0; i < 100; ++i) seen.poses.Add(PoseOf(pose_t::STATUS_RELATIVE));
+  for (int i = 0; i < 50; ++i) seen.poses.Add(PoseOf(pose_t::STATUS_RELATIVE_TO_BOAT));
+  const auto said = Said(seen);
+  EXPECT_NE(
+      said.find(
+          "obstacles, tracks, closest approach and alerts are there, but without a place on the earth: for 2.0 of 3.5 s they are in a frame that "
+          "began where the boat was, its own motion by the lidar; for 1.0 s nothing that stands was in sight, and they are relative to the boat "
+          "as if it lay still"),
+      std::string::npos)
+      << said;
+  EXPECT_NE(said.find("give the boat a GNSS receiver and a compass"), std::string::npos) << said;
+  // Of a part of the run.
+  seen.poses.Add(PoseOf(pose_t::STATUS_OK));
+  EXPECT_NE(Said(seen).find("position and heading on the earth were known for a part of the run only"), std::string::npos) << Said(seen);
+}
+
 TEST(Lacks, SaysThatNoSentenceCame) {
   auto seen = Whole();
   seen.poses = {};

@@ -11,7 +11,7 @@ const ChannelSet kDay{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA"
 std::string PlanOf(const Request& request, const ChannelSet& present = kDay) { return InWords(MakeLogPlan(request, present)); }
 
 TEST(ReplayPlan, OfALogBeginsAtTheRawChannels) {
-  EXPECT_EQ(PlanOf({}), "ran: lidar, segmenter, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(PlanOf({}), "ran: lidar, segmenter, odometer, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
   const auto plan = MakeLogPlan({}, kDay);
   EXPECT_TRUE(plan.Reads("LIDAR_PACKETS"));
   EXPECT_TRUE(plan.Reads("NAV_RAW"));
@@ -20,13 +20,15 @@ TEST(ReplayPlan, OfALogBeginsAtTheRawChannels) {
 
 TEST(ReplayPlan, WithoutNavRawTakesTheSentencesOfTheLidar) {
   const auto plan = MakeLogPlan({}, {"LIDAR_PACKETS"});
-  EXPECT_EQ(InWords(plan), "ran: lidar, segmenter, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(InWords(plan), "ran: lidar, segmenter, odometer, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, ALERT_ACK, ORDERS\n");
   EXPECT_FALSE(plan.Reads("NAV_RAW"));
 }
 
 TEST(ReplayPlan, FromAChannelStopsWhatGivesItAndWhatIsBefore) {
-  EXPECT_EQ(PlanOf({.from = {"LIDAR_SCAN"}}), "ran: segmenter, navigator, georeferencer, tracker\nread: LIDAR_SCAN, NAV_RAW, ALERT_ACK, ORDERS\n");
-  EXPECT_EQ(PlanOf({.from = {"SEGMENTS"}}), "ran: navigator, georeferencer, tracker\nread: LIDAR_SCAN, SEGMENTS, NAV_RAW, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(PlanOf({.from = {"LIDAR_SCAN"}}),
+            "ran: segmenter, odometer, navigator, georeferencer, tracker\nread: LIDAR_SCAN, NAV_RAW, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(PlanOf({.from = {"SEGMENTS"}}),
+            "ran: odometer, navigator, georeferencer, tracker\nread: LIDAR_SCAN, SEGMENTS, NAV_RAW, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanOf({.from = {"POSE"}}), "ran: lidar, segmenter, georeferencer, tracker\nread: LIDAR_PACKETS, POSE, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanOf({.from = {"SEGMENTS", "POSE"}}), "ran: georeferencer, tracker\nread: LIDAR_SCAN, SEGMENTS, POSE, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanOf({.from = {"OBSTACLES"}}), "ran: tracker\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK, ORDERS\n");
@@ -35,7 +37,7 @@ TEST(ReplayPlan, FromAChannelStopsWhatGivesItAndWhatIsBefore) {
 
 TEST(ReplayPlan, FromLidarNmeaLeavesNavRawAside) {
   const auto plan = MakeLogPlan({.from = {"LIDAR_NMEA"}}, kDay);
-  EXPECT_EQ(InWords(plan), "ran: segmenter, navigator, georeferencer, tracker\nread: LIDAR_SCAN, LIDAR_NMEA, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(InWords(plan), "ran: segmenter, odometer, navigator, georeferencer, tracker\nread: LIDAR_SCAN, LIDAR_NMEA, ALERT_ACK, ORDERS\n");
   EXPECT_FALSE(plan.Reads("NAV_RAW"));
 }
 
@@ -85,7 +87,7 @@ TEST(ReplayPlan, NeedsNoMoreThanItsCandidates) {
 }
 
 TEST(ReplayPlan, OfACaptureHasNoMessagesToRead) {
-  EXPECT_EQ(InWords(MakeCapturePlan({})), "ran: lidar, segmenter, navigator, georeferencer, tracker\nread: datagrams\n");
+  EXPECT_EQ(InWords(MakeCapturePlan({})), "ran: lidar, segmenter, odometer, navigator, georeferencer, tracker\nread: datagrams\n");
   EXPECT_EQ(InWords(MakeCapturePlan({.only = {"navigator"}})), "ran: navigator\nread: datagrams\n");
   EXPECT_THROW(MakeCapturePlan({.from = {"LIDAR_PACKETS"}}), RequestError);
   EXPECT_THROW(MakeCapturePlan({.only = {"segmenter"}}), RequestError);

@@ -209,9 +209,13 @@ export function holds(alert: Pick<wire.Alert, "state">): boolean { return alert.
 
 /** Whether the heading is only the course over ground: neither a compass nor an attitude sensor tells one. */
 export function isOnlyCourse(pose: Pick<wire.Pose, "heading_source"> | null | undefined): boolean { return pose?.heading_source === wire.Pose.HEADING_COURSE; }
+/** Whether the map is one of its own, which began where the boat was: nothing of it has a place on the earth. */
+export function isRelative(pose: Pick<wire.Pose, "status"> | null | undefined): boolean {
+  return pose?.status === wire.Pose.STATUS_RELATIVE || pose?.status === wire.Pose.STATUS_RELATIVE_COASTING || pose?.status === wire.Pose.STATUS_RELATIVE_TO_BOAT;
+}
 /** What is not known of where the boat is and where its bow points: without both there are no tracks. */
 export function lacking(pose: Pick<wire.Pose, "status"> | null): "position" | "heading" | null {
-  if (pose?.status === wire.Pose.STATUS_OK || pose?.status === wire.Pose.STATUS_COASTING) return null;
+  if (pose?.status === wire.Pose.STATUS_OK || pose?.status === wire.Pose.STATUS_COASTING || isRelative(pose)) return null;
   return pose?.status === wire.Pose.STATUS_NO_HEADING ? "heading" : "position";
 }
 

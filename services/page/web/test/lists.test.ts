@@ -33,7 +33,7 @@ test("a process that went silent stays on the roll, with its age", () => {
   const roll = new Roll();
   roll.take([health("lidar", [], 1), health("tracker", [], 1)], 0);
   roll.take([health("lidar", [], 1), health("tracker", [], 2)], 8000);
-  assert.deepEqual(roll.list(9000).map(({ health: { process }, age_s }) => [process, age_s]), [["tracker", 1], ["lidar", 9]]);
+  assert.deepEqual(roll.list(9000).map(({ health: { process }, age_s }) => [process, age_s]), [["lidar", 9], ["tracker", 1]]);
   assert.deepEqual(roll.list(700_000), []);
 });
 
@@ -87,7 +87,7 @@ test("a heading that is only the course over ground is told as such, and is a ca
   assert.equal(gravityOfPose(pose(Pose.HEADING_HDT)), "ok");
   assert.equal(gravityOfPose(pose(Pose.HEADING_COURSE)), "caution");
   assert.equal(gravityOfPose(pose(Pose.HEADING_NONE, Pose.STATUS_UNKNOWN)), "warning");
-  assert.deepEqual([Pose.STATUS_OK, Pose.STATUS_COASTING, Pose.STATUS_NO_HEADING, Pose.STATUS_NO_POSITION, Pose.STATUS_UNKNOWN].map((status) => lacking(pose(0, status))), [null, null, "heading", "position", "position"]);
+  assert.deepEqual([Pose.STATUS_OK, Pose.STATUS_COASTING, Pose.STATUS_NO_HEADING, Pose.STATUS_NO_POSITION, Pose.STATUS_UNKNOWN, Pose.STATUS_RELATIVE, Pose.STATUS_RELATIVE_TO_BOAT].map((status) => lacking(pose(0, status))), [null, null, "heading", "position", "position", null, null]);
   assert.equal(lacking(null), "position");
 });
 

@@ -1,8 +1,9 @@
 // The head of the page: live or not, time, own course and speed, sound, settings; below it one line when the picture may not be believed.
 import { beginOf } from "../film.js";
-import { isOnlyCourse, type Picture } from "../picture.js";
+import { isOnlyCourse, isRelative, type Picture } from "../picture.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
+import * as wire from "../messages/generated.js";
 import { bearing, date, speed, timeText } from "../units.js";
 import { button, make, placeChildren, setAttribute, setText } from "./dom.js";
 import { assess } from "./lookout.js";
@@ -105,10 +106,12 @@ export class Banner {
   // Course over ground in place of a compass is no heading: wind and current turn the bow away from it.
   private tellHeading(picture: Picture | null): void {
     const isCourse = isOnlyCourse(picture?.pose);
-    setText(this.headingName, isCourse ? words.course : words.heading);
+    // Without a compass a relative map is turned as the bow was at its begin.
+    const isFromStart = isRelative(picture?.pose) && picture?.pose?.heading_source === wire.Pose.HEADING_NONE;
+    setText(this.headingName, isFromStart ? words.relative : isCourse ? words.course : words.heading);
     setText(this.heading, bearing(picture?.heading_rad ?? NaN));
-    setText(this.headingNote, isCourse ? words.noCompass : "");
-    setAttribute(this.headingName, "title", isCourse ? words.courseHint : null);
+    setText(this.headingNote, isFromStart ? words.relativeNote : isCourse ? words.noCompass : "");
+    setAttribute(this.headingName, "title", isFromStart ? words.relativeHint : isCourse ? words.courseHint : null);
   }
 
   // A look-out that hears nothing raises no alert: the page itself makes the sound, once.

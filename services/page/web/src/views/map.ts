@@ -4,7 +4,7 @@ import { kFont } from "../drawing/labels.js";
 import { gridStep, latitudeOf, longitudeOf, mercatorX, mercatorY, offset, position, widthAt } from "../drawing/mercator.js";
 import type { Scene } from "../drawing/scene.js";
 import { Tiles } from "../drawing/tiles.js";
-import { lacking, type Picture } from "../picture.js";
+import { isRelative, lacking, type Picture } from "../picture.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { PlanView } from "./plan_view.js";
@@ -33,7 +33,7 @@ export class MapView extends PlanView {
 
   protected place(picture: Picture, { own }: Scene): boolean {
     const { pose } = picture, plane = this.plane;
-    if (!own.isOnMap || pose === null || !Number.isFinite(pose.latitude_deg)) return false;
+    if (!own.isOnMap || pose === null || isRelative(pose) || !Number.isFinite(pose.latitude_deg)) return false;
     // Turned by what north at the boat and at the datum differ is left out: a quarter of a degree at 20 km.
     const x = mercatorX(pose.longitude_deg), y = mercatorY(pose.latitude_deg), width_m = widthAt(pose.latitude_deg);
     if (!this.isFitted) {

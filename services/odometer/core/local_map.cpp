@@ -1,0 +1,151 @@
+#include "services/odometer/core/local_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lookout::odometer {
+
+namespace {
+
+// Whole numbers of a cube in 21 bits each.
+constexpr int kBits = 21;
+constexpr std::int64_t kOffset = std::int64_t{1} << (kBits - 1);
+constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+constexpr std::size_t kLeastSlots = 1024;
+
+std::uint64_t KeyOf(const Eigen::Vector3i& cube) {
+  const auto part = [](int value) { return static_cast<std::uint64_t>(value + kOffset) & kMask; };
+  return (part(cube.x()) << (2 * kBits)) | (part(cube.y()) << kBits) | part(cube.z());
+}
+
+std::size_t SlotOf(std::uint64_t key, std::size_t num_slots) {
+  return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> 32U) & (num_slots - 1);
+}
+
+// What grows and waves in the wind says a little.
+constexpr double kRoughWeight = 0.05;
+// Surfaces that look alike: within 45 deg.
+constexpr float kLeastCosine = 0.7F;
+
+bool LookAlike(const Eigen::Vector3f& normal, Shape shape, const Eigen::Vector3f& other_normal, Shape other_shape) {
+  if (shape != other_shape) return false;
+  return shape != Shape::kSurface || std::abs(normal.dot(other_normal)) > kLeastCosine;
+}
+
+Eigen::Matrix3d WeightOf(const Eigen::Vector3f& normal, Shape shape) {
+  if (shape == Shape::kSurface) {
+    const Eigen::Vector3d across = normal.cast<double>();
+    return across * across.transpose();
+  }
+  return (shape == Shape::kPost ? 1.0 : kRoughWeight) * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal().toDenseMatrix();
+}
+
+}  // namespace
+
+void CubeIndex::Clear() {
+  slots_.clear();
+  size_ = 0;
+}
+
+std::int32_t CubeIndex::Find(const Eigen::Vector3i& cube) const {
+  if (slots_.empty()) return kNone;
+  const auto key = KeyOf(cube);
+  for (std::size_t slot = SlotOf(key, slots_.size());; slot = (slot + 1) & (slots_.size() - 1)) {
+    if (slots_[slot].number == kNone || slots_[slot].key == key) return slots_[slot].number;
+  }
+}
+
+std::pair<std::int32_t, bool> CubeIndex::Insert(const Eigen::Vector3i& cube) {
+  if (2 * (size_ + 1) > slots_.size()) Grow();
+  const auto key = KeyOf(cube);
+  std::size_t slot = SlotOf(key, slots_.size());
+  while (slots_[slot].number != kNone && slots_[slot].key != key) slot = (slot + 1) & (slots_.size() - 1);
+  if (slots_[slot].number != kNone) return {slots_[slot].number, false};
+  slots_[slot] = {key, static_cast<std::int32_t>(size_++)};
+  return {slots_[slot].number, true};
+}
+
+void CubeIndex::Grow() {
+  const std::vector<Slot> before = std::exchange(slots_, std::vector<Slot>(std::max(kLeastSlots, 2 * slots_.size())));
+  for (const auto& one : before) {
+    if (one.number == kNone) continue;
+    std::size_t slot = SlotOf(one.key, slots_.size());
+    while (slots_[slot].number != kNone) slot = (slot + 1) & (slots_.size() - 1);
+    slots_[slot] = one;
+  }
+}
+
+Eigen::Vector3i CubeOf(const Eigen::Vector3d& p_m, double side_m) {
+  const auto whole = [side_m](double value_m) { return static_cast<int>(std::floor(value_m / side_m)); };
+  return {whole(p_m.x()), whole(p_m.y()), whole(p_m.z())};
+}
+
+std::vector<std::size_t> FirstOfEachCube(const std::vector<Eigen::Vector3d>& points_m, double side_m) {
+  std::vector<std::size_t> first;
+  first.reserve(points_m.size());
+  CubeIndex index;
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    if (index.Insert(CubeOf(points_m[i], side_m)).second) first.push_back(i);
+  }
+  return first;
+}
+
+void LocalMap::Clear() {
+  index_.Clear();
+  cubes_.clear();
+}
+
+void LocalMap::Add(const MapPoint& point) {
+  const auto place = CubeOf(point.p_m, kSideM);
+  const auto [number, is_new] = index_.Insert(place);
+  if (is_new) cubes_.emplace_back().place = place;
+  Cube& cube = cubes_[static_cast<std::size_t>(number)];
+  if (cube.num_points == kMaxPointsPerCube) return;
+  const Eigen::Vector3f p_m = point.p_m.cast<float>();
+  for (std::size_t i = 0; i < cube.num_points; ++i) {
+    if ((cube.points[i].p_m - p_m).squaredNorm() < static_cast<float>(kMinSpacingM * kMinSpacingM)) return;
+  }
+  cube.points[cube.num_points++] = {p_m, point.normal.cast<float>(), point.shape};
+}
+
+void LocalMap::Forget(const Eigen::Vector3d& center_m, double radius_m) {
+  std::vector<Cube> kept;
+  kept.reserve(cubes_.size());
+  index_.Clear();
+  for (const auto& cube : cubes_) {
+    if (((cube.place.cast<double>() * kSideM) - center_m).squaredNorm() > radius_m * radius_m) continue;
+    index_.Insert(cube.place);
+    kept.push_back(cube);
+  }
+  cubes_ = std::move(kept);
+}
+
+std::optional<Match> LocalMap::Nearest(const MapPoint& point, double radius_m) const {
+  const Eigen::Vector3i low = CubeOf(point.p_m - Eigen::Vector3d::Constant(radius_m), kSideM);
+  const Eigen::Vector3i high = CubeOf(point.p_m + Eigen::Vector3d::Constant(radius_m), kSideM);
+  const Eigen::Vector3f p_m = point.p_m.cast<float>();
+  const Eigen::Vector3f normal = point.normal.cast<float>();
+  float nearest_m2 = static_cast<float>(radius_m * radius_m);
+  const Kept* nearest = nullptr;
+  for (int x = low.x(); x <= high.x(); ++x) {
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int z = low.z(); z <= high.z(); ++z) {
+        const auto number = index_.Find({x, y, z});
+        if (number == CubeIndex::kNone) continue;
+        const Cube& cube = cubes_[static_cast<std::size_t>(number)];
+        for (std::size_t i = 0; i < cube.num_points; ++i) {
+          const Kept& kept = cube.points[i];
+          const float distance_m2 = (kept.p_m - p_m).squaredNorm();
+          if (distance_m2 >= nearest_m2 || !LookAlike(normal, point.shape, kept.normal, kept.shape)) continue;
+          nearest_m2 = distance_m2;
+          nearest = &kept;
+        }
+      }
+    }
+  }
+  if (nearest == nullptr) return std::nullopt;
+  return Match{nearest->p_m.cast<double>(), WeightOf(nearest->normal, nearest->shape)};
+}
+
+}  // namespace lookout::odometer

@@ -1,0 +1,48 @@
+// Where the boat is, by the returns of a scan and what was seen before.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "services/odometer/core/local_map.hpp"
+
+namespace lookout::odometer {
+
+/// Place and attitude of the vessel along the axes of the map: east-like, north-like, up (m), rotation about them (rad).
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// Rotation by a vector: axis times angle.
+Eigen::Matrix3d RotationBy(const Eigen::Vector3d& rotation_rad);
+/// The vector of a small rotation.
+Eigen::Vector3d RotationVector(const Eigen::Matrix3d& R);
+
+/// What is known before the returns are looked at.
+struct Expected {
+  Eigen::Isometry3d T_map_vessel = Eigen::Isometry3d::Identity();
+  /// Where the search begins.
+  Eigen::Isometry3d T_map_begin = Eigen::Isometry3d::Identity();
+  /// Inverse of the covariance of place and rotation; 0 = nothing is known of a direction.
+  Matrix6 information = Matrix6::Zero();
+  double search_m = 0.5;  // a return may lie so far from where it was seen before
+};
+
+struct Fit {
+  Eigen::Isometry3d T_map_vessel = Eigen::Isometry3d::Identity();
+  Matrix6 information = Matrix6::Zero();       // with what was known before
+  Matrix6 information_seen = Matrix6::Zero();  // of the returns alone
+  std::vector<bool> is_near;                   // [returns] something was seen before near it
+  std::vector<bool> is_matched;                // [returns] it lies on what was seen before
+  int num_near = 0;
+  int num_matched = 0;
+  double residual_m = 0.0;  // root mean square of those that are matched
+};
+
+/// Gauss-Newton with the nearest point of the map to each return, its differences weighted by the shape there and by Geman-McClure's function: what
+/// moves counts for little.
+///
+/// @param points  vessel frame at the end of the scan
+Fit Register(const std::vector<MapPoint>& points, const Expected& expected, const LocalMap& map);
+
+}  // namespace lookout::odometer

@@ -1,0 +1,181 @@
+#include "services/odometer/core/standing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "common/core/elementary.hpp"
+#include "services/odometer/core/local_map.hpp"
+
+namespace lookout::odometer {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Neighbours on one surface differ by less: 0.15 m, and 2 % of the range, which is a wall seen at 10 deg by columns 0.2 deg apart.
+constexpr double kSurfaceStepM = 0.15;
+constexpr double kSurfaceStepPerRange = 0.02;
+// Of rings, 2 deg apart: a bank that rises by one in three.
+constexpr double kBankStepPerRange = 0.12;
+// Columns on either side by which the surface is told, and how uneven it may be: noise of the range, and bent hulls.
+constexpr int kReach = 3;
+constexpr double kUnevenM = 0.12;
+constexpr double kPostM = 0.6;
+
+// The ranges of a scan as a ring of columns.
+class RangeImage {
+ public:
+  RangeImage(const Scan& scan, const StandingParams& params)
+      : scan_(scan),
+        T_vessel_lidar_(params.T_vessel_lidar),
+        num_columns_(static_cast<int>(scan.azimuth_rad.size())),
+        num_rings_(static_cast<int>(scan.rings.size())) {
+    elevations_.reserve(scan.rings.size());
+    for (const auto& ring : scan.rings) elevations_.push_back(SinCosOf(ring.elevation_rad));
+  }
+
+  int Column(int column) const { return column < 0 ? column + num_columns_ : column >= num_columns_ ? column - num_columns_ : column; }
+  // 0 = no return
+  double RangeM(int column, int ring) const {
+    return scan_.range[static_cast<std::size_t>(Column(column)) * static_cast<std::size_t>(num_rings_) + static_cast<std::size_t>(ring)] *
+           scan_.range_unit_m;
+  }
+  bool IsNear(int column, int ring, double range_m, double step_m) const {
+    if (ring < 0 || ring >= num_rings_) return false;
+    const double other_m = RangeM(column, ring);
+    return other_m > 0.0 && std::abs(other_m - range_m) < step_m;
+  }
+
+  Vector3d PointAt(int column, int ring) const {
+    const auto& beam = scan_.rings[static_cast<std::size_t>(ring)];
+    const auto elevation = elevations_[static_cast<std::size_t>(ring)];
+    const double range_m = RangeM(column, ring);
+    const auto azimuth = SinCosOf(scan_.azimuth_rad[static_cast<std::size_t>(Column(column))] + beam.azimuth_offset_rad);
+    const double level_m = range_m * elevation.cos;
+    return T_vessel_lidar_ * Vector3d(level_m * azimuth.cos, -level_m * azimuth.sin, range_m * elevation.sin + beam.origin_height_m);
+  }
+
+  // Whether one of the shots beside it met something as far away.
+  bool HasNeighbour(int column, int ring) const {
+    const double range_m = RangeM(column, ring);
+    const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
+    return IsNear(column + 1, ring, range_m, step_m) || IsNear(column - 1, ring, range_m, step_m) || IsNear(column, ring + 1, range_m, step_m) ||
+           IsNear(column, ring - 1, range_m, step_m);
+  }
+
+  // @return false where the surroundings say nothing: a wall seen at a grazing angle looks alike everywhere
+  bool Describe(int column, int ring, TimedPoint& point) const;
+
+ private:
+  bool IsPost(int column, int ring, double range_m) const;
+  struct Along {
+    Vector3d along_m = Vector3d::Zero();  // 0: no neighbour says
+    bool is_uneven = false;
+  };
+  Along AlongRing(int column, int ring, const Vector3d& p_m, double range_m) const;
+  Vector3d AcrossRings(int column, int ring, const Vector3d& p_m, double range_m) const;
+
+  const Scan& scan_;
+  const Eigen::Isometry3d& T_vessel_lidar_;
+  int num_columns_;
+  int num_rings_;
+  std::vector<SinCos> elevations_;
+};
+
+// Whether sight is free on both sides of something narrow.
+bool RangeImage::IsPost(int column, int ring, double range_m) const {
+  const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
+  const double column_m = std::max(1e-3, range_m * 6.3 / num_columns_);
+  const int most_columns = std::min(num_columns_ / 4, static_cast<int>(kPostM / column_m) + 1);
+  int width = 1;
+  for (const int side : {-1, 1}) {
+    int next = column + side;
+    while (width <= most_columns && IsNear(next, ring, range_m, step_m)) {
+      ++width;
+      next += side;
+    }
+    if (width > most_columns) return false;
+    // Something nearer hides the rest.
+    const double beside_m = RangeM(next, ring);
+    if (beside_m > 0.0 && beside_m < range_m) return false;
+  }
+  return true;
+}
+
+// Direction of the surface along the ring.
+RangeImage::Along RangeImage::AlongRing(int column, int ring, const Vector3d& p_m, double range_m) const {
+  const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
+  int reach = 0;
+  while (reach < kReach && IsNear(column + reach + 1, ring, range_m, step_m * (reach + 1)) &&
+         IsNear(column - reach - 1, ring, range_m, step_m * (reach + 1))) {
+    ++reach;
+  }
+  if (reach > 0) {
+    const Vector3d one_m = PointAt(column - reach, ring);
+    const Vector3d other_m = PointAt(column + reach, ring);
+    const Vector3d along_m = other_m - one_m;
+    const Vector3d away_m = p_m - one_m - along_m * (along_m.dot(p_m - one_m) / along_m.squaredNorm());
+    return {along_m, away_m.squaredNorm() > kUnevenM * kUnevenM};
+  }
+  // The end of a surface: one side.
+  for (const int side : {-1, 1}) {
+    if (IsNear(column + 2 * side, ring, range_m, 2.0 * step_m) && IsNear(column + side, ring, range_m, step_m)) {
+      return {PointAt(column + 2 * side, ring) - p_m, false};
+    }
+  }
+  return {};
+}
+
+// Upwards along the surface; straight up where no other ring met it.
+Vector3d RangeImage::AcrossRings(int column, int ring, const Vector3d& p_m, double range_m) const {
+  const double step_m = kSurfaceStepM + kBankStepPerRange * range_m;
+  const bool has_upper = IsNear(column, ring + 1, range_m, step_m);
+  const bool has_lower = IsNear(column, ring - 1, range_m, step_m);
+  if (!has_upper && !has_lower) return Vector3d::UnitZ();
+  return (has_upper ? PointAt(column, ring + 1) : p_m) - (has_lower ? PointAt(column, ring - 1) : p_m);
+}
+
+bool RangeImage::Describe(int column, int ring, TimedPoint& point) const {
+  const double range_m = RangeM(column, ring);
+  if (IsPost(column, ring, range_m)) {
+    point.shape = Shape::kPost;
+    return true;
+  }
+  const auto along = AlongRing(column, ring, point.p_vessel_m, range_m);
+  if (along.is_uneven) return true;
+  const Vector3d normal = along.along_m.cross(AcrossRings(column, ring, point.p_vessel_m, range_m));
+  const double length = normal.norm();
+  if (length <= 0.0) return false;
+  point.normal = normal / length;
+  point.shape = Shape::kSurface;
+  return true;
+}
+
+}  // namespace
+
+std::vector<TimedPoint> StandingPoints(const Scan& scan, double sample_m, const StandingParams& params) {
+  std::vector<TimedPoint> points;
+  const RangeImage image(scan, params);
+  CubeIndex cubes;
+  const std::int64_t end_ns = (scan.end_time - scan.time).count() * 1000;
+  const auto num_rings = static_cast<int>(scan.rings.size());
+  for (int column = 0; std::cmp_less(column, scan.azimuth_rad.size()); ++column) {
+    for (int ring = 0; ring < num_rings; ++ring) {
+      const double range_m = image.RangeM(column, ring);
+      if (range_m <= 0.0 || range_m < params.min_range_m || range_m > params.max_range_m || !image.HasNeighbour(column, ring)) continue;
+      TimedPoint point{image.PointAt(column, ring)};
+      const auto& p_vessel_m = point.p_vessel_m;
+      if (p_vessel_m.z() + params.reference_point_above_water_m < params.min_height_m) continue;
+      if (!params.own_vessel_box_m.isEmpty() && params.own_vessel_box_m.contains(p_vessel_m)) continue;
+      if (!cubes.Insert(CubeOf(p_vessel_m, sample_m)).second) continue;
+      const auto time_ns = scan.time_ns[static_cast<std::size_t>(column)] + scan.rings[static_cast<std::size_t>(ring)].time_offset_ns;
+      point.before_end_s = static_cast<double>(end_ns - time_ns) * 1e-9;
+      if (image.Describe(column, ring, point)) points.push_back(point);
+    }
+  }
+  return points;
+}
+
+}  // namespace lookout::odometer

@@ -1,0 +1,16 @@
+// odometer.txtpb and boat.txtpb as checked parameters.
+#pragma once
+
+#include <filesystem>
+
+#include "services/odometer/core/odometer.hpp"
+
+namespace lookout::odometer {
+
+using Params = OdometerParams;
+
+/// @param config_folder  the boat's folder; without odometer.txtpb its defaults count
+/// @throws config::ConfigError
+Params LoadParams(const std::filesystem::path& config_folder);
+
+}  // namespace lookout::odometer

@@ -1,0 +1,183 @@
+// The frame of its own where the earth is not known.
+#include "services/navigator/core/relative_frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kTiltSdRad = 0.09;
+const Utime kStart{std::chrono::microseconds(1'700'000'000'000'000)};
+
+Pose Unknown(Utime time) {
+  Pose pose;
+  pose.time = time;
+  return pose;
+}
+
+Pose OnEarth(Utime time) {
+  Pose pose;
+  pose.time = time;
+  pose.status = PoseStatus::kOk;
+  pose.datum = {54.0, 10.0, 0.0};
+  return pose;
+}
+
+OdometryMotion Straight(Utime end, double forward_m, double turn_rad = 0.0) {
+  OdometryMotion motion{end - 100ms, end, true, {forward_m, 0.0}, turn_rad, {}};
+  motion.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
+  return motion;
+}
+
+TEST(Odometry, IsTheSameAfterItsSentence) {
+  auto motion = Straight(kStart, 0.123456, -0.012345678);
+  motion.displacement_m.y() = -0.05;
+  motion.covariance(0, 2) = motion.covariance(2, 0) = -5e-6;
+  const auto line = ToSentence(motion);
+  EXPECT_LT(line.size(), 256U);
+  const auto again = ParseOdometry(line);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->begin, motion.begin);
+  EXPECT_EQ(again->end, motion.end);
+  EXPECT_NEAR(again->displacement_m.x(), 0.123456, 1e-9);
+  EXPECT_NEAR(again->turn_rad, -0.012345678, 1e-12);
+  EXPECT_NEAR(again->covariance(2, 0), -5e-6, 1e-11);
+  EXPECT_EQ(ToSentence(*again), line);
+  const auto unknown = ParseOdometry(ToSentence({kStart - 100ms, kStart}));
+  ASSERT_TRUE(unknown);
+  EXPECT_FALSE(unknown->is_known);
+}
+
+TEST(Odometry, RefusesOtherLines) {
+  EXPECT_FALSE(ParseOdometry(""));
+  EXPECT_FALSE(ParseOdometry("$GPRMC,,V,,,,,,,,,,N*53"));
+  EXPECT_FALSE(ParseOdometry("$PLKODO,1,2,K*61"));
+  auto motion = Straight(kStart, 0.1);
+  motion.covariance(0, 0) = -1.0;
+  EXPECT_FALSE(ParseOdometry(ToSentence(motion)));
+  motion = Straight(kStart, 200.0);
+  EXPECT_FALSE(ParseOdometry(ToSentence(motion)));
+  auto line = ToSentence(Straight(kStart, 0.1));
+  line[20] = line[20] == '1' ? '2' : '1';
+  EXPECT_FALSE(ParseOdometry(line));
+}
+
+TEST(RelativeFrame, BeginsWhereTheBoatIsAndGoesWithIt) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  Pose pose;
+  for (int i = 1; i <= 30; ++i) {
+    const Utime time = kStart + i * 100ms;
+    frame.Add(Straight(time, 0.2));
+    pose = frame.At(Unknown(time), kTiltSdRad);
+    if (i < 5) {
+      EXPECT_EQ(pose.status, PoseStatus::kUnknown) << i;
+    }
+    if (i == 5) {
+      EXPECT_EQ(pose.status, PoseStatus::kRelative);
+      EXPECT_EQ(pose.p_map_m.head<2>().norm(), 0.0);
+    }
+  }
+  // The bow lay along y.
+  EXPECT_NEAR(pose.p_map_m.x(), 0.0, 1e-9);
+  EXPECT_NEAR(pose.p_map_m.y(), 25 * 0.2, 1e-9);
+  EXPECT_NEAR(pose.velocity_map_mps.y(), 2.0, 1e-9);
+  EXPECT_NEAR(pose.heading_rad, 0.0, 1e-9);
+  EXPECT_TRUE(std::isnan(pose.latitude_deg) && std::isnan(pose.datum.latitude_deg));
+  EXPECT_EQ(pose.datum.ellipsoid_height_m, 1.0);
+  EXPECT_GT(pose.covariance(1, 1), 24e-4);
+  EXPECT_NEAR(pose.covariance(6, 6), kTiltSdRad * kTiltSdRad, 1e-12);
+}
+
+TEST(RelativeFrame, ATurnIsClockwise) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  frame.At(Unknown(kStart), kTiltSdRad);
+  frame.Add({kStart + 400ms, kStart + 500ms});
+  frame.At(Unknown(kStart + 500ms), kTiltSdRad);
+  frame.Add(Straight(kStart + 600ms, 1.0, kPi / 2.0));
+  frame.Add(Straight(kStart + 700ms, 1.0));
+  const auto pose = frame.At(Unknown(kStart + 700ms), kTiltSdRad);
+  EXPECT_NEAR(pose.heading_rad, kPi / 2.0, 1e-9);
+  EXPECT_NEAR(pose.p_map_m.x(), 1.0, 1e-9);  // to starboard of where the bow was
+  EXPECT_NEAR(pose.p_map_m.y(), 1.0, 1e-9);
+}
+
+TEST(RelativeFrame, WithoutAKnownMotionTheBoatGoesOnForThreeSecondsAndThenStands) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  for (int i = 1; i <= 10; ++i) frame.Add(Straight(kStart + i * 100ms, 0.1));
+  const Utime last = kStart + 1s;
+  EXPECT_EQ(frame.At(Unknown(last), kTiltSdRad).status, PoseStatus::kRelative);
+  frame.Add({last, last + 100ms});
+  const auto coasting = frame.At(Unknown(last + 1s), kTiltSdRad);
+  EXPECT_EQ(coasting.status, PoseStatus::kRelativeCoasting);
+  EXPECT_NEAR(coasting.p_map_m.y(), 1.0, 1e-6);
+  const auto still = frame.At(Unknown(last + 10s), kTiltSdRad);
+  EXPECT_EQ(still.status, PoseStatus::kRelativeToBoat);
+  EXPECT_NEAR(still.p_map_m.y(), 3.0, 1e-6);
+  EXPECT_EQ(still.velocity_map_mps.norm(), 0.0);
+  // It goes on from there, in the same frame.
+  frame.Add(Straight(last + 10s + 100ms, 0.5));
+  const auto again = frame.At(Unknown(last + 10s + 100ms), kTiltSdRad);
+  EXPECT_EQ(again.status, PoseStatus::kRelative);
+  EXPECT_NEAR(again.p_map_m.y(), 3.5, 1e-6);
+  EXPECT_EQ(again.datum.ellipsoid_height_m, still.datum.ellipsoid_height_m);
+}
+
+// In open water from the start.
+TEST(RelativeFrame, NothingThatStandsMeansRelativeToTheBoat) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  frame.Add({kStart, kStart + 100ms});
+  EXPECT_EQ(frame.At(Unknown(kStart + 400ms), kTiltSdRad).status, PoseStatus::kUnknown);
+  const auto pose = frame.At(Unknown(kStart + 500ms), kTiltSdRad);
+  EXPECT_EQ(pose.status, PoseStatus::kRelativeToBoat);
+  EXPECT_EQ(pose.p_map_m.norm() + pose.velocity_map_mps.norm(), 0.0);
+}
+
+TEST(RelativeFrame, TheEarthComesFirst) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  for (int i = 1; i <= 10; ++i) frame.Add(Straight(kStart + i * 100ms, 0.1));
+  EXPECT_EQ(frame.At(Unknown(kStart + 1s), kTiltSdRad).status, PoseStatus::kRelative);
+  EXPECT_EQ(frame.At(OnEarth(kStart + 2s), kTiltSdRad).datum.latitude_deg, 54.0);
+  // A gap is a gap: tracks of the earth live on in it.
+  EXPECT_FALSE(frame.Wants(kStart + 20s));
+  EXPECT_EQ(frame.At(Unknown(kStart + 20s), kTiltSdRad).status, PoseStatus::kUnknown);
+  EXPECT_TRUE(frame.Wants(kStart + 32s));
+  const auto second = frame.At(Unknown(kStart + 32s), kTiltSdRad);
+  EXPECT_EQ(second.datum.ellipsoid_height_m, 2.0);
+  EXPECT_NEAR(second.p_map_m.norm(), 0.0, 1e-12);
+}
+
+TEST(RelativeFrame, WaitsForSentencesThatCome) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  frame.NoteSentence();
+  frame.Add({kStart, kStart + 100ms});
+  EXPECT_EQ(frame.At(Unknown(kStart + 2s), kTiltSdRad).status, PoseStatus::kUnknown);
+  EXPECT_EQ(frame.At(Unknown(kStart + 3s), kTiltSdRad).status, PoseStatus::kRelativeToBoat);
+}
+
+// Without the odometer all is as before.
+TEST(RelativeFrame, NeedsTheOdometer) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  EXPECT_EQ(frame.At(Unknown(kStart + 60s), kTiltSdRad).status, PoseStatus::kUnknown);
+}
+
+TEST(RelativeFrame, BetweenTwoMotionsThePoseLiesBetween) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  for (int i = 1; i <= 10; ++i) frame.Add(Straight(kStart + i * 100ms, 0.1));
+  frame.At(Unknown(kStart + 600ms), kTiltSdRad);
+  EXPECT_NEAR(frame.At(Unknown(kStart + 760ms), kTiltSdRad).p_map_m.y(), 0.16, 1e-9);
+}
+
+}  // namespace
+}  // namespace lookout::navigator

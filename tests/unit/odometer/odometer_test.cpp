@@ -1,0 +1,182 @@
+// Motion from scan to scan, of scenes with known motion.
+#include "services/odometer/core/odometer.hpp"
+
+#include <gtest/gtest.h>
+#include <random>
+
+#include "common/core/angles.hpp"
+#include "tests/unit/odometer/made_scene.hpp"
+
+namespace lookout::odometer {
+namespace {
+
+std::vector<Motion> MotionsOf(const std::vector<Wall>& walls, const Arc& arc, int num_scans, const OdometerParams& params = MadeParams()) {
+  Odometer odometer(params);
+  std::vector<Motion> motions;
+  for (int i = 0; i < num_scans; ++i) motions.push_back(odometer.Consume(MakeScan(i, walls, arc)));
+  return motions;
+}
+
+int NumKnown(const std::vector<Motion>& motions) {
+  return static_cast<int>(std::ranges::count_if(motions, [](const Motion& motion) { return motion.is_known(); }));
+}
+
+TEST(Odometer, SaysHowFarTheBoatWentForward) {
+  const auto motions = MotionsOf(Basin(), {2.0, 0.0}, 30);
+  EXPECT_EQ(motions[0].reason, Reason::kFirstScan);
+  EXPECT_GE(NumKnown(motions), 24);
+  const auto& last = motions.back();
+  EXPECT_NEAR(last.displacement_m.x(), 0.2, 0.01);
+  EXPECT_NEAR(last.displacement_m.y(), 0.0, 0.01);
+  EXPECT_NEAR(last.turn_rad, 0.0, DegToRad(0.05));
+  EXPECT_EQ(last.end - last.begin, std::chrono::milliseconds(100));
+}
+
+TEST(Odometer, TurnsAreClockwiseAndPortIsPositive) {
+  // To starboard at 10 deg/s.
+  const auto right = MotionsOf(Basin(), {1.0, DegToRad(10.0)}, 20).back();
+  ASSERT_TRUE(right.is_known());
+  EXPECT_NEAR(right.turn_rad, DegToRad(1.0), DegToRad(0.05));
+  EXPECT_NEAR(right.displacement_m.x(), 0.1, 0.01);
+  EXPECT_LT(right.displacement_m.y(), 0.002);
+  const auto left = MotionsOf(Basin(), {1.0, DegToRad(-10.0)}, 20).back();
+  EXPECT_NEAR(left.turn_rad, DegToRad(-1.0), DegToRad(0.05));
+}
+
+TEST(Odometer, ASumOfMotionsStaysNearTheWay) {
+  const Arc arc{1.5, DegToRad(6.0)};
+  const auto motions = MotionsOf(Basin(), arc, 60);
+  Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
+  double bearing_rad = 0.0;
+  constexpr std::size_t kFirst = 7;
+  for (std::size_t i = kFirst; i < motions.size(); ++i) {
+    ASSERT_TRUE(motions[i].is_known()) << i << " reason " << static_cast<int>(motions[i].reason);
+    const auto& way_m = motions[i].displacement_m;
+    p_m += Eigen::Vector2d(std::cos(bearing_rad) * way_m.x() - std::sin(bearing_rad) * way_m.y(),
+                           std::sin(bearing_rad) * way_m.x() + std::cos(bearing_rad) * way_m.y());
+    bearing_rad -= motions[i].turn_rad;
+  }
+  const double begin_s = kFirst * kScanS;
+  const double end_s = 60 * kScanS;
+  const double turned_rad = arc.BearingRad(begin_s);
+  const Eigen::Vector2d truth_m = arc.PlaceM(end_s) - arc.PlaceM(begin_s);
+  const Eigen::Vector2d turned_m(std::cos(turned_rad) * truth_m.x() + std::sin(turned_rad) * truth_m.y(),
+                                 -std::sin(turned_rad) * truth_m.x() + std::cos(turned_rad) * truth_m.y());
+  EXPECT_LT((p_m - turned_m).norm(), 0.01 * 1.5 * (end_s - begin_s));  // 1 % of the way
+  EXPECT_NEAR(bearing_rad, arc.BearingRad(end_s) - turned_rad, DegToRad(0.1));
+}
+
+TEST(Odometer, WhatMovesIsLeftOut) {
+  auto walls = Basin();
+  AddBox({10.0, -12.0}, 8.0, 3.0, {-2.0, 1.5}, walls);
+  AddBox({-15.0, 5.0}, 6.0, 2.5, {1.0, -1.0}, walls);
+  const auto motions = MotionsOf(walls, {1.0, 0.0}, 40);
+  EXPECT_GE(NumKnown(motions), 34);
+  for (std::size_t i = 8; i < motions.size(); ++i) {
+    if (!motions[i].is_known()) continue;
+    EXPECT_NEAR(motions[i].displacement_m.x(), 0.1, 0.02) << i;
+    EXPECT_NEAR(motions[i].displacement_m.y(), 0.0, 0.02) << i;
+  }
+}
+
+TEST(Odometer, OpenWaterIsUnknown) {
+  for (const auto& motion : MotionsOf({}, {2.0, 0.0}, 10)) EXPECT_FALSE(motion.is_known());
+  EXPECT_EQ(MotionsOf({}, {2.0, 0.0}, 3).back().reason, Reason::kFewReturns);
+}
+
+// One boat that moves must not be taken for the shore.
+TEST(Odometer, OneBoatAloneIsUnknown) {
+  std::vector<Wall> walls;
+  AddBox({15.0, 8.0}, 10.0, 4.0, {1.0, -0.5}, walls);
+  EXPECT_EQ(NumKnown(MotionsOf(walls, {2.0, 0.0}, 30)), 0);
+}
+
+// In a lock, where everything is within 8 m.
+TEST(Odometer, WallsAllAroundAreNotOneThing) {
+  std::vector<Wall> walls;
+  AddBox({0.0, 0.0}, 16.0, 8.0, Eigen::Vector2d::Zero(), walls);
+  EXPECT_GE(NumKnown(MotionsOf(walls, {0.2, 0.0}, 20)), 12);
+}
+
+// A straight quay says nothing of the motion along it: it is unknown from the start, and told by the covariance where it was known before.
+TEST(Odometer, AStraightQuayLeavesTheWayAlongItOpen) {
+  const std::vector<Wall> quay{{{-300.0, 10.0}, {300.0, 10.0}}};
+  const auto motions = MotionsOf(quay, {2.0, 0.0}, 20);
+  EXPECT_EQ(NumKnown(motions), 0);
+  EXPECT_EQ(motions.back().reason, Reason::kUndetermined);
+  EXPECT_GT(motions.back().covariance(0, 0), 100.0 * motions.back().covariance(1, 1));
+}
+
+TEST(Odometer, LostLockIsToldAtOnce) {
+  Odometer odometer(MadeParams());
+  const Arc arc{1.0, 0.0};
+  for (int i = 0; i < 20; ++i) odometer.Consume(MakeScan(i, Basin(), arc));
+  for (int i = 20; i < 25; ++i) EXPECT_FALSE(odometer.Consume(MakeScan(i, {}, arc)).is_known()) << i;
+  // And it is found again.
+  Motion motion;
+  for (int i = 25; i < 40; ++i) motion = odometer.Consume(MakeScan(i, Basin(), arc));
+  EXPECT_TRUE(motion.is_known());
+  EXPECT_NEAR(motion.displacement_m.x(), 0.1, 0.02);
+}
+
+TEST(Odometer, AGapIsUnknown) {
+  Odometer odometer(MadeParams());
+  for (int i = 0; i < 10; ++i) odometer.Consume(MakeScan(i, Basin(), {1.0, 0.0}));
+  const auto motion = odometer.Consume(MakeScan(30, Basin(), {1.0, 0.0}));
+  EXPECT_EQ(motion.reason, Reason::kGap);
+  EXPECT_EQ(motion.begin, motion.end);
+}
+
+// Returns that stand alone are drops.
+TEST(Odometer, RainOnOpenWaterIsUnknown) {
+  std::mt19937 random(7);
+  Odometer odometer(MadeParams());
+  for (int i = 0; i < 20; ++i) {
+    auto scan = MakeScan(i, {}, {1.0, 0.0});
+    for (int drop = 0; drop < 600; ++drop) scan.range[random() % scan.range.size()] = static_cast<std::uint16_t>(1000 + random() % 8000);
+    EXPECT_FALSE(odometer.Consume(scan).is_known()) << i;
+  }
+}
+
+TEST(Odometer, TheSameScansGiveTheSameNumbers) {
+  const auto one = MotionsOf(Basin(), {1.5, DegToRad(6.0)}, 15);
+  const auto other = MotionsOf(Basin(), {1.5, DegToRad(6.0)}, 15);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].displacement_m, other[i].displacement_m);
+    EXPECT_EQ(one[i].turn_rad, other[i].turn_rad);
+    EXPECT_EQ(one[i].covariance, other[i].covariance);
+  }
+}
+
+TEST(Odometer, TheOwnBoatAndLowReturnsAreLeftOut) {
+  auto params = MadeParams().standing;
+  std::vector<Wall> walls;
+  AddBox({0.0, 0.0}, 4.0, 4.0, Eigen::Vector2d::Zero(), walls);  // gear around the lidar
+  walls.push_back({{10.0, -5.0}, {10.0, 5.0}, 0.3});             // a crest
+  const auto scan = MakeScan(0, walls, {});
+  EXPECT_FALSE(StandingPoints(scan, 0.5, params).empty());
+  params.own_vessel_box_m = Eigen::AlignedBox3d(Eigen::Vector3d(-3.0, -3.0, -1.0), Eigen::Vector3d(3.0, 3.0, 4.0));
+  EXPECT_TRUE(StandingPoints(scan, 0.5, params).empty());
+}
+
+TEST(Odometer, AWallHasItsNormalAndAPostHasBothDirections) {
+  std::vector<Wall> walls{{{10.0, -20.0}, {10.0, 20.0}}};
+  AddBox({-8.0, 0.0}, 0.3, 0.3, Eigen::Vector2d::Zero(), walls);
+  int num_walls = 0;
+  int num_posts = 0;
+  for (const auto& point : StandingPoints(MakeScan(0, walls, {}), 0.5, MadeParams().standing)) {
+    if (point.p_vessel_m.x() < 0.0) {
+      EXPECT_EQ(point.shape, Shape::kPost);
+      ++num_posts;
+    } else if (std::abs(point.p_vessel_m.y()) < 15.0) {
+      ASSERT_EQ(point.shape, Shape::kSurface);
+      EXPECT_GT(std::abs(point.normal.x()), 0.99);
+      ++num_walls;
+    }
+  }
+  EXPECT_GT(num_walls, 20);
+  EXPECT_GT(num_posts, 2);
+}
+
+}  // namespace
+}  // namespace lookout::odometer
