@@ -180,11 +180,13 @@ double ComparedUnit::Badness() const {
   constexpr double kNotDone = 1000;
   constexpr double kPerPoint = 10;
   constexpr double kPerAlert = 2;
+  constexpr double kPerObstacle = 0.1;  // of a scan: 1 for a second of it
   double badness = a.state == Standing::State::kDone && b.state != Standing::State::kDone ? kNotDone : 0;
   const double drop = Truth(comparison.truth_a, "miou") - Truth(comparison.truth_b, "miou");
   if (drop > 0) badness += kPerPoint * drop;  // false where one is not known
   if (const auto& tracks = comparison.tracks) badness += static_cast<double>(tracks->num_lost + tracks->num_gained);
   if (const auto& alerts = comparison.alerts) badness += kPerAlert * static_cast<double>(alerts->num_lost + alerts->num_gained);
+  if (const auto& obstacles = comparison.obstacles) badness += kPerObstacle * static_cast<double>(obstacles->num_lost + obstacles->num_gained);
   return badness;
 }
 

@@ -67,11 +67,16 @@ std::int64_t Statement::Int(int column) const { return sqlite3_column_int64(stat
 double Statement::Double(int column) const { return sqlite3_column_double(statement_.get(), column); }
 
 std::string Statement::Text(int column) const {
-  const auto* const text = static_cast<const char*>(sqlite3_column_blob(statement_.get(), column));
+  const auto* const text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
   return text == nullptr ? "" : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
 }
 
 bool Statement::IsNull(int column) const { return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL; }
+
+bool Statement::IsNumber(int column) const {
+  const int type = sqlite3_column_type(statement_.get(), column);
+  return type == SQLITE_INTEGER || type == SQLITE_FLOAT;
+}
 
 bool Statement::IsReadOnly() const { return sqlite3_stmt_readonly(statement_.get()) != 0; }
 

@@ -35,6 +35,7 @@ class Statement {
   double Double(int column) const;
   std::string Text(int column) const;
   bool IsNull(int column) const;
+  bool IsNumber(int column) const;
   /// Whether it writes nothing.
   bool IsReadOnly() const;
   sqlite3_stmt* get() const { return statement_.get(); }

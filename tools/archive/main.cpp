@@ -15,8 +15,10 @@
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
+#include "tools/archive/compare.hpp"
 #include "tools/archive/plan.hpp"
 #include "tools/archive/programs.hpp"
+#include "tools/archive/query.hpp"
 #include "tools/archive/run.hpp"
 #include "tools/archive/scan.hpp"
 #include "tools/archive/work.hpp"
@@ -45,6 +47,8 @@ struct Requests {
   archive::RunRequest run;
   bool prints_engine = false;
   fs::path batch;
+  archive::CompareRequest compare;
+  std::string sql;
 };
 
 void AddScan(CLI::App& app, Requests& requests, std::map<CLI::App*, Command>& commands) {
@@ -112,6 +116,31 @@ void AddRun(CLI::App& app, Requests& requests, std::map<CLI::App*, Command>& com
   };
 }
 
+void AddCompare(CLI::App& app, Requests& requests, std::map<CLI::App*, Command>& commands) {
+  auto& request = requests.compare;
+  auto* compare = app.add_subcommand("compare", "two versions over all runs that both are planned for");
+  compare->add_option("A", request.a, "version")->required();
+  compare->add_option("B", request.b, "version")->required();
+  compare->add_option("--csv", request.csv, "write a row per unit as a CSV file");
+  compare->add_option("--html", request.html, "write the comparison as one page");
+  compare->add_option("--worst", request.num_worst, "units on the page with pictures")->check(CLI::Range(0, 1000))->capture_default_str();
+  compare->add_option("--fail-if", request.fail_if, "condition on a figure, such as \"miou_drop > 0.5\": exit code 1 where it holds (several)")
+      ->allow_extra_args(false);
+  compare->add_flag("--force", request.force, "replace files that are there");
+  commands[compare] = [&request](const archive::ArchiveFolder& folder) {
+    return archive::Compare(folder, request, std::cout) ? EXIT_SUCCESS : kExitFailed;
+  };
+}
+
+void AddQuery(CLI::App& app, Requests& requests, std::map<CLI::App*, Command>& commands) {
+  auto* query = app.add_subcommand("query", "SQL over the index and the tables of the results");
+  query->add_option("SQL", requests.sql, "one SELECT")->required();
+  commands[query] = [&requests](const archive::ArchiveFolder& folder) {
+    archive::Query(folder, requests.sql, std::cout);
+    return EXIT_SUCCESS;
+  };
+}
+
 void AddWork(CLI::App& app, Requests& requests, std::map<CLI::App*, Command>& commands) {
   auto* work = app.add_subcommand("work", "the units of a batch: what an engine starts");
   work->add_option("--batch", requests.batch, "list of units that run has made")->required()->check(CLI::ExistingFile);
@@ -128,7 +157,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "lookout-archive " + lookout::runtime::Version());
   app.require_subcommand(1);
   app.fallthrough();
-  app.footer("Exit code: 0 fine; 1 failed, or units failed or are not done; 2 wrong command line or config.");
+  app.footer("Exit code: 0 fine; 1 failed, or units failed or are not done, or a --fail-if holds; 2 wrong command line or config.");
   Requests requests;
   app.add_option("--archive", requests.folder, "folder of index and results")->capture_default_str();
   std::map<CLI::App*, Command> commands;
@@ -136,6 +165,8 @@ int main(int argc, char** argv) {
     AddScan(app, requests, commands);
     AddPlan(app, requests, commands);
     AddRun(app, requests, commands);
+    AddCompare(app, requests, commands);
+    AddQuery(app, requests, commands);
     AddWork(app, requests, commands);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
