@@ -95,9 +95,9 @@ std::string Number(const std::optional<double>& value) { return value ? fmt::for
 
 // A row of the table of figures, by the name without _a and _b.
 std::string FigureRow(const Figures& figures, const std::string& name, const std::string& words) {
-  const auto drop = figures.at(name + "_drop");
+  const auto rise = figures.at(name + "_rise");
   return "<tr><th>" + words + "</th><td>" + Number(figures.at(name + "_a")) + "</td><td>" + Number(figures.at(name + "_b")) + "</td><td>" +
-         (drop ? fmt::format("{:+.4g}", -*drop) : "–") + "</td></tr>\n";
+         (rise && *rise != 0 ? fmt::format("{:+.4g}", *rise) : Number(rise)) + "</td></tr>\n";
 }
 
 std::string BalanceRow(const Figures& figures, const std::string& name, const std::string& words) {
@@ -128,7 +128,10 @@ std::string Commands(const Comparison& comparison, const ComparedUnit& unit) {
                      : unit.comparison.differences.empty() ? std::nullopt
                                                            : unit.comparison.differences.front().first_utime_us;
   if (first) text += "# go to " + TimeText(Utime(std::chrono::microseconds(*first))) + "\n";
-  return "<pre>" + Html(text) + "</pre>\n";
+  std::string html;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) html += Html(line) + "\n";
+  return "<pre>" + html + "</pre>\n";
 }
 
 std::string UnitSection(const ArchiveFolder& archive, const Comparison& comparison, const ComparedUnit& unit) {
@@ -147,8 +150,8 @@ std::string UnitSection(const ArchiveFolder& archive, const Comparison& comparis
   for (const auto* standing : {&unit.a, &unit.b}) {
     if (!standing->reason.empty()) html += Html((standing == &unit.a ? "A " : "B ") + WordOf(*standing) + ": " + standing->reason + " ");
   }
-  html += "</p>\n" + ChannelTable(unit.comparison) + "<div class=pair>" + Picture(archive, unit.a, "A " + comparison.a.name) +
-          Picture(archive, unit.b, "B " + comparison.b.name) + "</div>\n" + Commands(comparison, unit) + "</section>\n";
+  html += "</p>\n" + ChannelTable(unit.comparison) + "<div class=pair>" + Picture(archive, unit.a, "A: " + comparison.a.name) +
+          Picture(archive, unit.b, "B: " + comparison.b.name) + "</div>\n" + Commands(comparison, unit) + "</section>\n";
   return html;
 }
 
@@ -181,7 +184,7 @@ std::string AllTable(const Comparison& comparison) {
                     differences.empty() ? (unit.AreBothDone() ? "equal" : "–") : Html(differences.front().channel), balance(unit.comparison.tracks),
                     balance(unit.comparison.alerts), TruthCell(unit.comparison.truth_a, "miou"), TruthCell(unit.comparison.truth_b, "miou"));
   }
-  return html + "</table>\n";
+  return html + "</table></div>\n";
 }
 
 constexpr const char* kHead = R"html(<!doctype html>
@@ -195,7 +198,7 @@ table { border-collapse: collapse; margin: .8rem 0; font-variant-numeric: tabula
 th { text-align: left; font-weight: 600; overflow-wrap: anywhere; } td { text-align: right; }
 section { border-top: 2px solid #c3cdd6; padding: .6rem 0 1rem; } .pair { display: grid; grid-template-columns: 1fr 1fr; gap: 1rem; }
 figure { margin: 0; } figcaption { color: #51606e; } img { width: 100%; border: 1px solid #dde3e8; background: #fff; }
-pre { background: #f2f5f7; padding: .6rem .8rem; overflow-x: auto; } .none { color: #51606e; }
+pre { background: #f2f5f7; padding: .6rem .8rem; overflow-x: auto; } .wide { overflow-x: auto; } .wide th { min-width: 6rem; max-width: 28rem; } .none { color: #51606e; }
 </style></head><body>
 )html";
 
@@ -230,7 +233,7 @@ void WritePage(const ArchiveFolder& archive, const Comparison& comparison, const
                " newly failed.</p>\n<table><tr><th></th><th>" + "version</th><th>config</th><th>digest</th><th>programs</th></tr>\n");
   constexpr std::size_t kShort = 12;
   for (const auto* version : {&comparison.a, &comparison.b}) {
-    output.Write("<tr><th>" + std::string(version == &comparison.a ? "A " : "B ") + Html(version->name) + "</th><td>" +
+    output.Write("<tr><th>" + std::string(version == &comparison.a ? "A: " : "B: ") + Html(version->name) + "</th><td>" +
                  Html(version->program_version) + "</td><td>" + Html(version->config) + "</td><td>" + Html(version->config_digest.substr(0, kShort)) +
                  "</td><td>" + Html(version->programs_digest.substr(0, kShort)) + "</td></tr>\n");
   }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/bus/channels.hpp"
 #include "common/core/angles.hpp"
 #include "common/core/printable.hpp"
 #include "tools/archive/csv_reader.hpp"
@@ -231,7 +232,9 @@ std::vector<ChannelDifference> DifferingChannels(const fs::path& a, const fs::pa
   if (channels.empty()) return differences;
   auto hashes_a = Hashes(a, channels);
   auto hashes_b = Hashes(b, channels);
-  for (const auto& channel : channels) {
+  for (const auto& known : bus::kChannels) {  // in the order of the data
+    const std::string channel(known.name);
+    if (!channels.contains(channel)) continue;
     auto difference = DifferenceOf(channel, hashes_a[channel], hashes_b[channel]);
     if (difference.num_a + difference.num_b > 0) differences.push_back(std::move(difference));
   }

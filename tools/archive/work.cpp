@@ -279,7 +279,6 @@ bool WorkOnBatch(const ArchiveFolder& archive, const fs::path& batch, std::ostre
     if (place == digests.end()) place = digests.emplace(unit.programs, DigestOfPrograms(unit.programs)).first;
     UnitOutcome outcome{UnitEnd::kNotBegun, "the programs in " + PathText(unit.programs) + " are others than those of the plan"};
     if (place->second == unit.recipe.programs_digest) outcome = WorkOn(archive, unit);
-    if (outcome.end == UnitEnd::kFailed) out << unit.run << ": failed: " << PrintableLines(outcome.reason) << std::endl;
     if (outcome.end == UnitEnd::kNotBegun || outcome.end == UnitEnd::kNotFinished) {
       out << unit.run << ": not done: " << PrintableLines(outcome.reason) << std::endl;
       is_all = false;

@@ -28,7 +28,7 @@ struct UnitOutcome {
 UnitOutcome WorkOn(const ArchiveFolder& archive, const Unit& unit);
 
 /// The units of a file, one after the other. @return whether each is done or failed
-/// @param out  a line per unit that is not done
+/// @param out  a line per unit that is neither, with the reason
 bool WorkOnBatch(const ArchiveFolder& archive, const std::filesystem::path& batch, std::ostream& out);
 
 }  // namespace lookout::archive
