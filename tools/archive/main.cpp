@@ -91,6 +91,7 @@ void AddPlan(CLI::App& app, Requests& requests, std::map<CLI::App*, Command>& co
 
 void AddRun(CLI::App& app, Requests& requests, std::map<CLI::App*, Command>& commands) {
   auto& request = requests.run;
+  request.own_program = archive::OwnProgramFolder() / "lookout-archive";
   auto* run = app.add_subcommand("run", "what has no result yet, by an engine");
   run->add_option("--name", request.versions, "this version alone (several); without it all")->allow_extra_args(false);
   run->add_option("--engine", request.engine, "local, parallel, slurm, snakemake, or a file with commands for bash")->capture_default_str();

@@ -48,6 +48,7 @@ struct Todo {
   fs::path batches;  // folder of N.jsonl
   std::int64_t num_batches = 0;
   std::int64_t num_failed_before = 0;
+  std::int64_t num_not_ready = 0;  // their recordings are gone, or were changed
 };
 
 std::string Quoted(const std::string& text) {
@@ -63,7 +64,7 @@ std::string SelectText(const RunRequest& request) {
          "version.config_digest, version.programs, version.programs_digest, version.program_version, version.tables "
          "FROM unit JOIN run ON run.name = unit.run JOIN version ON version.name = unit.version WHERE " +
          (names.empty() ? "1" : "unit.version IN (" + names + ")") + (request.only.empty() ? "" : " AND (" + request.only + "\n)") +
-         " ORDER BY unit.run, unit.part, unit.version";
+         " ORDER BY unit.version, unit.run, unit.part";
 }
 
 std::optional<std::int64_t> TimeOf(const Statement& row, int column) {
@@ -160,14 +161,25 @@ class TodoMaker {
       out_ << row.Text(1) << ": its result does not hold, and is made again: " << PrintableLines(validity.reason) << '\n';
     }
     const auto unit = UnitOfRow(row);
-    if (!unit) {
-      out_ << row.Text(1) << ": was scanned anew since it was planned: plan again\n";
+    const auto fault = unit ? FaultOfInputs(*unit) : "was scanned anew since it was planned: plan again";
+    if (!fault.empty()) {
+      ++todo.num_not_ready;
+      out_ << row.Text(1) << ": not done: " << PrintableLines(fault) << '\n';
       return;
     }
     if (validity.is_valid) RemoveResult(archive_, key);
     todo.units.push_back({key, unit->run, row.Int(9)});
     todo.size_bytes += row.Int(9);
     lines_.push_back(UnitLine(*unit));
+  }
+
+  static std::string FaultOfInputs(const Unit& unit) {
+    for (const auto& input : unit.inputs) {
+      const auto stamp = StampOf(input.path);
+      if (!stamp) return "its recording cannot be found: " + input.path.string();
+      if (stamp->size_bytes != input.size_bytes || stamp->modified_ns != input.modified_ns) return "its recording was changed: scan and plan again";
+    }
+    return "";
   }
 
   // In a folder that is called by what it holds: an engine that still works on an older list has that one.
@@ -236,14 +248,12 @@ class Watcher {
   Clock::time_point next_ = begin_;
 };
 
-fs::path OwnProgram() { return fs::read_symlink("/proc/self/exe"); }
-
 void RunLocally(const ArchiveFolder& archive, const RunRequest& request, const Todo& todo, Watcher& watcher) {
   Processes workers;
   std::int64_t next = 0;
   while (next < todo.num_batches || workers.num_running() > 0) {
     while (next < todo.num_batches && workers.num_running() < static_cast<std::size_t>(request.num_jobs)) {
-      workers.Start({OwnProgram().string(), "work", "--archive", archive.folder().string(), "--batch",
+      workers.Start({request.own_program.string(), "work", "--archive", archive.folder().string(), "--batch",
                      (todo.batches / (std::to_string(next++) + ".jsonl")).string()},
                     {});
     }
@@ -255,7 +265,7 @@ void RunLocally(const ArchiveFolder& archive, const RunRequest& request, const T
 
 void RunByScript(const ArchiveFolder& archive, const RunRequest& request, const Todo& todo, Watcher& watcher) {
   Processes engine;
-  engine.Start({"/bin/bash", "-c", EngineText(request.engine)}, {{"LOOKOUT_ARCHIVE", OwnProgram().string()},
+  engine.Start({"/bin/bash", "-c", EngineText(request.engine)}, {{"LOOKOUT_ARCHIVE", request.own_program.string()},
                                                                  {"LOOKOUT_FOLDER", archive.folder().string()},
                                                                  {"LOOKOUT_BATCHES", todo.batches.string()},
                                                                  {"LOOKOUT_LAST", std::to_string(todo.num_batches - 1)},
@@ -329,6 +339,7 @@ RunSummary RunUnits(const ArchiveFolder& archive, const RunRequest& request, std
     } else if (!todo.units.empty()) {
       out << fmt::format("{} units were not finished: again\n", todo.units.size()) << std::flush;
     }
+    sum.num_not_done = todo.num_not_ready;
     if (todo.units.empty()) break;
     Watcher watcher(archive, todo, request.progress);
     if (request.engine == "local") {
@@ -341,7 +352,7 @@ RunSummary RunUnits(const ArchiveFolder& archive, const RunRequest& request, std
     const auto settled = Settle(archive, todo, out);
     sum.num_done += settled.num_done;
     sum.num_failed += settled.num_failed;
-    sum.num_not_done = settled.num_not_done;
+    sum.num_not_done += settled.num_not_done;
     if (settled.num_not_done == 0) break;
   }
   out << fmt::format("{} done, {} failed, {} not done\n", sum.num_done, sum.num_failed, sum.num_not_done);

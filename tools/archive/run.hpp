@@ -21,6 +21,7 @@ struct RunRequest {
   int num_retries = 2;                // rounds for units that were killed or whose computer failed
   bool again_failed = false;          // failed units too
   std::int64_t batch_units = 0;       // units a batch; 0: as many as make 1000 batches
+  std::filesystem::path own_program;  // lookout-archive, of which engines start "work"
   std::FILE* progress = nullptr;      // for people; nullptr: silent
 };
 
