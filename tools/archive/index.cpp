@@ -26,7 +26,6 @@ CREATE TABLE IF NOT EXISTS version(
 CREATE TABLE IF NOT EXISTS unit(
   version TEXT NOT NULL, run TEXT NOT NULL, part INTEGER NOT NULL, from_us INTEGER, to_us INTEGER, key TEXT NOT NULL,
   PRIMARY KEY(version, run, part)) WITHOUT ROWID;
-CREATE INDEX IF NOT EXISTS unit_by_key ON unit(key);
 -- Results that were compared with their sidecars, by what tells that a file has changed: they need not be read again. `outcome`: done or failed.
 CREATE TABLE IF NOT EXISTS result(key TEXT PRIMARY KEY, stamp TEXT NOT NULL, outcome TEXT NOT NULL, reason TEXT NOT NULL) WITHOUT ROWID;
 )sql";

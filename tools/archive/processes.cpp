@@ -38,7 +38,7 @@ std::vector<std::string> EnvironmentWith(const std::map<std::string, std::string
 }  // namespace
 
 Processes::~Processes() {
-  for (const auto process : running_) ::kill(process, SIGTERM);
+  for (const auto process : running_) ::kill(-process, SIGTERM);
   for (const auto process : running_) {
     while (::waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
     }
@@ -55,12 +55,14 @@ void Processes::Start(const std::vector<std::string>& arguments, const std::map<
   if (child < 0) throw std::runtime_error("a process cannot be started: " + io::ErrnoText());
   if (child == 0) {
     constexpr int kExitNotStarted = 127;
+    ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     const int none = ::open("/dev/null", O_RDONLY);
     if (::getppid() == parent && none >= 0 && ::dup2(none, STDIN_FILENO) >= 0)
       ::execve(word_pointers[0], word_pointers.data(), variable_pointers.data());
     ::_exit(kExitNotStarted);
   }
+  ::setpgid(child, child);  // here too: the child may not have come so far when it is to end
   running_.push_back(child);
 }
 

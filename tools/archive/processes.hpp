@@ -14,11 +14,13 @@ namespace lookout::archive {
 class Processes {
  public:
   Processes() = default;
-  /// Ends those that still run (SIGTERM), and waits for them.
+  /// Ends those that still run, with all that they have started (SIGTERM), and waits for them.
   ~Processes();
   Processes(const Processes&) = delete;
   Processes& operator=(const Processes&) = delete;
 
+  /// In a group of its own, so that a signal of the terminal comes to this process alone, which ends them in order.
+  ///
   /// @param arguments    the program first; standard input is closed, output and errors are this process' own
   /// @param environment  added to that of this process
   /// @throws std::runtime_error when it cannot be started

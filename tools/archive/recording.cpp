@@ -70,7 +70,13 @@ void AddTo(StreamEnds& ends, Mark mark, std::int64_t seq) {
 Recording LookAtLog(const std::filesystem::path& file) {
   Recording found;
   found.kind = "lcm-log";
-  bus::LogReader reader(file, io::ThrowIfStopAsked);
+  // A large file of another kind is not read to its end in search of an event.
+  constexpr int kMostBlocks = 1000;
+  int num_blocks = 0;
+  bus::LogReader reader(file, [&found, &num_blocks] {
+    io::ThrowIfStopAsked();
+    if (!found.start_us && ++num_blocks > kMostBlocks) throw std::runtime_error("holds no event in its first part");
+  });
   EventDigest digest;
   CutFinder cuts;
   std::string writer;  // version of the program that wrote it

@@ -26,9 +26,8 @@ bool IsPlainName(const std::string& name) {
 }
 
 std::string StampText(const std::string& name, const FileStamp& stamp) {
-  std::ostringstream text;
-  text << name << ' ' << stamp.size_bytes << ' ' << stamp.modified_ns << ' ' << stamp.changed_ns << ' ' << stamp.inode << '\n';
-  return text.str();
+  return name + ' ' + std::to_string(stamp.size_bytes) + ' ' + std::to_string(stamp.modified_ns) + ' ' + std::to_string(stamp.changed_ns) + ' ' +
+         std::to_string(stamp.inode) + '\n';
 }
 
 // A digest over the status of the sidecar and of each file, and the names; empty: something is not there.
@@ -131,11 +130,12 @@ Validity Verify(const ArchiveFolder& archive, const std::string& key) {
 }
 
 std::string StampOfResult(const ArchiveFolder& archive, const std::string& key, const std::string& verified_stamp) {
-  std::istringstream words(verified_stamp);
-  std::string word;
-  words >> word;  // the digest
   std::vector<std::string> names;
-  while (words >> word) names.push_back(word);
+  for (auto begin = verified_stamp.find(' '); begin != std::string::npos;) {  // behind the digest
+    const auto end = verified_stamp.find(' ', begin + 1);
+    names.push_back(verified_stamp.substr(begin + 1, end - begin - 1));
+    begin = end;
+  }
   return StampOfNames(archive, key, names);
 }
 

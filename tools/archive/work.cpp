@@ -233,7 +233,7 @@ void PutInPlace(const ArchiveFolder& archive, const Unit& unit, const Sidecar& s
   const auto place = archive.Result(unit.key);
   fs::create_directories(place.parent_path());
   RemoveResult(archive, unit.key);
-  for (const auto& file : io::FilesIn(archive.Work(unit.key) / "out")) io::SyncName(file);
+  io::SyncName(archive.Work(unit.key) / "out/channels.csv");  // the names of all, as they are in one folder
   fs::rename(archive.Work(unit.key) / "out", place);
   io::SyncName(place);
   WriteText(archive.Sidecar(unit.key), SidecarText(sidecar));
