@@ -133,7 +133,7 @@ if ! sinfo -h -o %T 2>/dev/null | grep -q idle; then
   fail 'Slurm does not start here'
 else
   prepare slurm
-  archive --archive slurm run --engine slurm --jobs 2 >said 2>&1 &
+  "$bin/lookout-archive" --archive slurm run --engine slurm --jobs 2 >said 2>&1 &
   pid=$!
   sleep 6
   step 'Slurm: the node is drained for 5 s'
@@ -148,6 +148,7 @@ else
   sleep 1
   start_slurmctld
   sleep 3
+  scontrol update nodename=archive-node state=resume  # the controller may have lost that it was
   kill -KILL "$pid"
   wait "$pid" 2>/dev/null
   finish slurm slurm  # jobs of the killed run still work
@@ -168,7 +169,7 @@ for ((i = 0; i < num_kills; ++i)); do
   [ $((RANDOM % 3)) -ne 0 ] || engine=parallel
   setsid "$bin/lookout-archive" --archive killed run --engine "$engine" --jobs 2 >said 2>&1 &
   pid=$!
-  archive --archive killed plan --config "$config" --name A >/dev/null 2>&1 &
+  "$bin/lookout-archive" --archive killed plan --config "$config" --name A >/dev/null 2>&1 &
   planner=$!
   sleep "$((RANDOM % 4)).$((RANDOM % 10))"
   case $((RANDOM % 4)) in
