@@ -32,6 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::int64_t kMostTold = 20;
 constexpr std::int64_t kMostBatches = 1000;  // Slurm's greatest array, unless its administrator says otherwise
 
 // A unit that has no result yet.
@@ -146,6 +147,7 @@ class TodoMaker {
       }
     }
     transaction.Commit();
+    if (todo.num_not_ready > kMostTold) out_ << todo.num_not_ready - kMostTold << " more units are not done for such a reason\n";
     WriteBatches(todo);
     return todo;
   }
@@ -163,7 +165,7 @@ class TodoMaker {
     const auto unit = UnitOfRow(row);
     const auto fault = unit ? FaultOfInputs(*unit) : "was scanned anew since it was planned: plan again";
     if (!fault.empty()) {
-      ++todo.num_not_ready;
+      if (++todo.num_not_ready > kMostTold) return;  // a mount that is gone would fill the screen
       out_ << row.Text(1) << ": not done: " << PrintableLines(fault) << '\n';
       return;
     }
