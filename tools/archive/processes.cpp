@@ -31,7 +31,10 @@ std::vector<std::string> EnvironmentWith(const std::map<std::string, std::string
     const std::string text(*entry);
     if (!added.contains(text.substr(0, text.find('=')))) all.push_back(text);
   }
-  for (const auto& [name, value] : added) all.push_back(name + "=" + value);
+  for (const auto& [name, value] : added) {
+    all.push_back(name);
+    all.back().append("=").append(value);
+  }
   return all;
 }
 
@@ -54,13 +57,13 @@ void Processes::Start(const std::vector<std::string>& arguments, const std::map<
   const auto child = ::fork();
   if (child < 0) throw std::runtime_error("a process cannot be started: " + io::ErrnoText());
   if (child == 0) {
-    constexpr int kExitNotStarted = 127;
+    constexpr int kNoProgram = 127;
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     const int none = ::open("/dev/null", O_RDONLY);
     if (::getppid() == parent && none >= 0 && ::dup2(none, STDIN_FILENO) >= 0)
       ::execve(word_pointers[0], word_pointers.data(), variable_pointers.data());
-    ::_exit(kExitNotStarted);
+    ::_exit(kNoProgram);
   }
   ::setpgid(child, child);  // here too: the child may not have come so far when it is to end
   running_.push_back(child);
