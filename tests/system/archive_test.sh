@@ -166,6 +166,8 @@ expect_code 2 compare A C
 
 expect_code 0 query "SELECT scene, count(DISTINCT track_id) > 3 FROM tracks WHERE version = 'A' AND status = 'confirmed' AND scene = 'dense' GROUP BY run"
 says 'dense,1'
+expect_code 0 query "SELECT 'miou', count(*) FROM truth WHERE version = 'A' AND figure = 'miou' AND value > 50"
+says 'miou,1'
 expect_code 2 query 'DELETE FROM run'
 expect_code 2 query 'SELECT nothing FROM tracks'
 
