@@ -80,7 +80,7 @@ Walk FilesBelow(const std::vector<fs::path>& folders, const fs::path& left_out) 
 }
 
 fs::path TruthOf(const fs::path& file, bool is_only_one) {
-  const auto own = file.parent_path() / (file.stem().native() + ".truth");
+  auto own = file.parent_path() / (file.stem().native() + ".truth");
   if (IsTruth(own)) return own;
   const auto shared = file.parent_path() / "truth";
   return is_only_one && IsTruth(shared) ? shared : fs::path();
