@@ -77,7 +77,7 @@ set(CPACK_DEBIAN_PACKAGE_DEPENDS "iproute2, procps, systemd | systemd-standalone
 # LCM's own tools, and the rule that closes the port of the bus; a boat does without.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-bin, nftables")
 # lookout-up, where there is no systemd. Not recommended: runit's own recommendation would start a second supervisor on the boat.
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-matplotlib, runit, default-jre, liblcm-java, libjchart2d-java")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-matplotlib, runit, default-jre, liblcm-java, libjchart2d-java, parallel, snakemake, slurm-client")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(control_folder ${CMAKE_CURRENT_BINARY_DIR}/debian)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA "${control_folder}/conffiles;${control_folder}/preinst;${control_folder}/postinst;${control_folder}/prerm;${control_folder}/postrm")

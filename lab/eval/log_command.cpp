@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -37,6 +38,8 @@ namespace {
 // A scan waits for its obstacles for some seconds of scans at most.
 constexpr std::size_t kMaxWaiting = 256;
 
+constexpr const char* kOwnTracker = "lookout";  // the boat's, in tables of tracks
+
 // Decodes and hands on. @return whether the message could be used
 template <typename Message>
 bool Take(const bus::LogEvent& event, auto& taker) {
@@ -48,6 +51,41 @@ bool Take(const bus::LogEvent& event, auto& taker) {
 bool IsOfAScan(std::string_view channel) {
   return channel == bus::kLidarScan.name || channel == bus::kSegments.name || channel == bus::kObstacles.name || channel == bus::kTracks.name ||
          channel == bus::kAlerts.name;
+}
+
+// What a script compares: a row per figure, "-" where it is not known. Of tracks those of the boat's own tracker.
+void WriteFigures(const std::string& file, bool is_forced, const Evaluation& evaluation, const std::vector<NamedTable>& tracks) {
+  Table table({"figure", "value"});
+  table.Add({"scans", Number(evaluation.scan_iou.count)});
+  table.Add({"miou", Percent(evaluation.scan_iou.value(), 3)});
+  table.Add({"segments_per_scan", Number(evaluation.segments.value(), 4)});
+  table.Add({"false_segments_per_scan", Number(evaluation.clutter_segments.value(), 4)});
+  table.Add({"sure_false_segments_per_scan", Number(evaluation.sure_clutter_segments.value(), 4)});
+  Mean recall;
+  Errors errors;
+  for (const auto& [kind, score] : evaluation.scores_by_kind) {
+    recall.sum += score.recall.sum;
+    recall.count += score.recall.count;
+  }
+  for (const auto& [kind, of_kind] : evaluation.errors_by_kind) errors.Add(of_kind);
+  table.Add({"recall", Percent(recall.value(), 3)});
+  const auto& outside = errors.position_outside_m;
+  table.Add({"position_outside_95_m", outside.count() > 0 ? Number(outside.Percentile(95), 4) : "-"});
+  std::set<std::string> names;
+  for (const auto& named : tracks) {
+    const auto& rows = named.table.rows();
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      if (rows[i].size() < 3 || rows[i][1] != kOwnTracker) continue;
+      for (std::size_t column = 2; column < rows[i].size(); ++column) {
+        auto name = named.name + "." + named.table.header()[column];
+        if (!names.insert(name).second) name += ".2";  // a table may have a heading twice
+        table.Add({name, rows[i][column]});
+      }
+    }
+  }
+  io::OutputFile output(file, {.force = is_forced});
+  table.PrintCsv(output.stream());
+  output.Commit();
 }
 
 }  // namespace
@@ -131,17 +169,20 @@ int EvaluateLog(const LogOptions& options) {
     PrintSeen(std::cout, evaluation);
     PrintSegmentation(std::cout, evaluation, options.min_num_returns);
   }
+  std::vector<NamedTable> track_tables;
   if (tracks) {
     tracks->Finish();
     std::vector<TrackRow> rows;
     for (auto& row : tracks->Rows()) rows.push_back({"log", std::move(row)});
-    if (tracks->has_own_tracks()) PrintTables(TablesOf(rows), std::cout);
+    if (tracks->has_own_tracks()) track_tables = TablesOf(rows);
+    PrintTables(track_tables, std::cout);
   }
   PrintMachine(std::cout, machine);
   for (const auto& [channel, num] : num_of_other_type) std::cout << log::OtherTypeText(*bus::FindChannel(channel), num) << '\n';
   if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";
   if (num_incomplete > 0) std::cout << num_incomplete << " scans lack a part of OBSTACLES\n";
   if (reader.num_damaged() > 0) std::cout << reader.num_damaged() << " stretches of the log are damaged\n";
+  if (!options.figures_file.empty()) WriteFigures(options.figures_file, options.is_forced, evaluation, track_tables);
   return EXIT_SUCCESS;
 }
 

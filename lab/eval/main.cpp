@@ -66,6 +66,9 @@ Options ParseOptions(int argc, char** argv) {
       ->needs(in)
       ->capture_default_str();
 
+  app.add_option("--figures", log.figures_file, "write the figures of a log against the truth, one a row, as a CSV file: figure, value")
+      ->needs(truth);
+
   auto* config = app.add_option("--config", comparison.config_folder, "folder of the boat's *.txtpb files")
                      ->check(CLI::ExistingDirectory)
                      ->check(lookout::config::BoatFolderFault)
@@ -113,7 +116,7 @@ Options ParseOptions(int argc, char** argv) {
   app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written")
       ->check(CLI::ExistingFile)
       ->excludes(in);
-  needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));
+  app.add_flag("--force", comparison.is_forced, "replace files that are there");
   auto* tracks = needs_config(app.add_flag("--tracks", options.has_tracks, "trackers on runs of all services, in place of methods on scans"));
   auto* alerts = needs_config(app.add_flag("--alerts", options.has_alerts, "alerts on runs of all services, in place of methods on scans"));
   app.add_option("--list", options.list_file, "with --alerts: write each alert and each danger, as a row of a CSV file")->needs(alerts);
@@ -181,7 +184,11 @@ eval::RunOptions RunsOf(const eval::ComparisonOptions& options) {
 
 int main(int argc, char** argv) try {
   const auto options = ParseOptions(argc, argv);
-  if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
+  if (!options.log.log_file.empty()) {
+    auto log = options.log;
+    log.is_forced = options.comparison.is_forced;
+    return eval::EvaluateLog(log);
+  }
   if (!options.autoferry_folder.empty()) {
     return eval::EvaluateAutoferry({options.autoferry_folder, options.comparison.config_folder, options.comparison.block_files});
   }

@@ -36,4 +36,7 @@ inline Payload operator+(Payload a, const Payload& b) {
 /// ROS bags, MCAP files and databases of rosbag2, and messages of ROS: into the folders of their targets below `root`.
 void WriteRecordings(const std::filesystem::path& root);
 
+/// Texts that lookout-archive reads.
+void WriteArchiveTexts(const Folder& folder);
+
 }  // namespace lookout::fuzz

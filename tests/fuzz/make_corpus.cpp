@@ -522,6 +522,7 @@ int main(int argc, char** argv) try {
   WritePatches(Folder(root / "fuzz_tracker"));
   WritePointFiles(Folder(root / "fuzz_point_file"));
   WritePageRequests(Folder(root / "fuzz_page_request"));
+  WriteArchiveTexts(Folder(root / "fuzz_archive"));
   WriteRecordings(root);
   WriteConfigs(Folder(root / "fuzz_config"), argv[2]);
   return 0;

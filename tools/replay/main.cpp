@@ -38,6 +38,7 @@
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
 #include "tools/replay/lacks.hpp"
+#include "tools/replay/message_hashes.hpp"
 #include "tools/replay/plan.hpp"
 
 namespace {
@@ -53,6 +54,7 @@ struct Options {
   bool force = false;
   lookout::replay::Request request;
   bool shows_progress = false;
+  fs::path hashes;
   std::optional<std::chrono::sys_days> day = {};
 };
 
@@ -76,6 +78,7 @@ Options ParseOptions(int argc, char** argv) {
       ->check(CLI::IsMember(lookout::replay::ServiceNames()));
   app.add_flag("--progress", options.shows_progress,
                "show progress as on a terminal; without it, where standard error is none, a line comes each minute");
+  app.add_option("--hashes", options.hashes, "CSV file to write: channel, number, time and hash of each computed message");
   app.add_option("--date", day,
                  "day of the first time in a text log in which no sentence tells a date (GGA and GLL alone), as 2026-07-01; without it 1970-01-01")
       ->check([](const std::string& text) { return lookout::navigator::ParseDay(text) ? std::string() : "'" + text + "' is no day as 2026-07-01"; });
@@ -211,6 +214,8 @@ void Replay(const Options& options) {
   lookout::log::LogOutput output(
       options.output,
       {.force = options.force, .inputs = std::move(config_and_inputs), .tell = [](const std::string& line) { spdlog::warn("{}", line); }});
+  std::optional<lookout::replay::MessageHashes> hashes;
+  if (!options.hashes.empty()) hashes.emplace(options.hashes, options.force);
   const auto start = std::chrono::steady_clock::now();
   lookout::runtime::Progress looking("replay", lookout::runtime::OnlyTerminal(stderr));
   auto inspection = lookout::replay::Inspect(options.inputs, options.request,
@@ -225,6 +230,7 @@ void Replay(const Options& options) {
       output.Write(time, lookout::bus::kRunInfo.name, lookout::bus::Encode(run_info));
     }
     watched.Add(channel, bytes);
+    if (hashes) hashes->Add(channel, bytes);
     output.Write(time, channel, bytes);
   });
 
@@ -264,6 +270,7 @@ void Replay(const Options& options) {
   for (const auto& line : lookout::replay::Lacks(SeenIn(options, inspection, chain, watched))) spdlog::warn("{}", line);
   std::FILE* const out = output.IsStandardOutput() ? stderr : stdout;  // a log that goes there is not mixed with lines
   output.Commit();
+  if (hashes) hashes->Commit();
   PrintDigests(chain, out);  // last: the log is there, whether or not anybody reads these
 }
 

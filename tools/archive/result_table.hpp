@@ -1,0 +1,26 @@
+// The rows of one kind of table of all results, as a table of SQLite.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/archive/database.hpp"
+
+namespace lookout::archive {
+
+/// A file of a result.
+struct ResultFile {
+  std::string version;
+  std::string run;
+  std::string scene;
+  std::int64_t part = 0;
+  std::filesystem::path file;
+};
+
+/// Makes the table `name` of the files, which are read as it is read; those of other versions or runs than a query names are not opened. The columns
+/// are version, run, scene, part, then those of the first file, by their names: of files with other columns those that they share.
+/// The database holds the table until it is closed.
+void AddResultTable(Database& database, const std::string& name, std::vector<ResultFile> files);
+
+}  // namespace lookout::archive
