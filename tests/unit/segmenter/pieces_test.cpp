@@ -282,6 +282,27 @@ TEST(MeasurePieces, SaysHowRoughAPieceIsAlongItsRings) {
   EXPECT_NEAR(Of(features[2], PieceFeature::kLone), 3.0 / 5.0, kRoundingM);
 }
 
+// A net before a wall: partly hit shots have it as the first of two returns, whole ones as the only one.
+TEST(MeasurePieces, OfShotsOfTwoReturnsTheNeighbourIsTheNearerOne) {
+  auto scan = EmptyScan({.num_columns = 360, .num_rings = 3, .num_returns = 2});
+  for (int column = 100; column < 104; ++column) {
+    SetReturn(scan, column, 1, column % 2 == 0 ? 10.0 : 15.0, 0);
+    SetReturn(scan, column, 1, column % 2 == 0 ? 15.0 : 10.0, 1);
+  }
+  const auto returns = ClassifyReturns(scan, {}).returns;
+  ScanGrid grid;
+  grid.Fill(scan, returns, Eigen::Matrix3d::Identity());
+  std::vector<std::int32_t> piece_of_return;
+  piece_of_return.reserve(returns.size());
+  for (const auto& one : returns) piece_of_return.push_back(one.range_m < 12.0F ? 0 : 1);
+  PieceTable pieces;
+  pieces.Build(grid, piece_of_return, 2);
+  PieceMeasurer measurer;
+  const auto features = measurer.Measure(grid, pieces, 1.5);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kLone), 0.0F);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kRough), 0.0F);
+}
+
 // What floats is met by the lowest beam that passes over the water before it.
 TEST(MeasurePieces, SaysWhatTheBeamBelowMet) {
   PieceScene scene;

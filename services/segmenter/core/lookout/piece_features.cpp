@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "common/core/angles.hpp"
@@ -73,26 +74,33 @@ void PieceMeasurer::LookAround(const ScanGrid& grid, const PieceTable& pieces) {
 void PieceMeasurer::LookAlongRings(const ScanGrid& grid, const PieceTable& pieces) {
   surfaces_.assign(static_cast<std::size_t>(pieces.size()), {});
   const auto of_returns = pieces.of_returns();
-  const auto is_of = [&](std::int32_t index, std::int32_t piece) {
-    return index != ScanGrid::kNone && of_returns[static_cast<std::size_t>(index)] == piece;
-  };
   for (std::size_t i = 0; i < of_returns.size(); ++i) {
     const std::int32_t piece = of_returns[i];
     if (piece < 0) continue;
     const auto index = static_cast<std::int32_t>(i);
     const int line = grid.LineOf(index);
     const int column = grid.ColumnOf(index);
-    const int before = grid.Wrap(column - 1);
-    const int after = grid.Wrap(column + 1);
+    const double range_m = grid.RangeAt(line, column);
+    // Of a shot of two returns the one of the piece that is nearer in range.
+    const auto beside = [&](int other_column) {
+      double best_m = std::numeric_limits<double>::infinity();
+      for (int layer = 0; layer < grid.num_layers(); ++layer) {
+        const int other_line = grid.RingOf(line) * grid.num_layers() + layer;
+        const std::int32_t other = grid.At(other_line, other_column);
+        if (other == ScanGrid::kNone || of_returns[static_cast<std::size_t>(other)] != piece) continue;
+        const double other_m = grid.RangeAt(other_line, other_column);
+        if (std::abs(other_m - range_m) < std::abs(best_m - range_m)) best_m = other_m;
+      }
+      return best_m;
+    };
+    const double before_m = beside(grid.Wrap(column - 1));
+    const double after_m = beside(grid.Wrap(column + 1));
     Surface& surface = surfaces_[static_cast<std::size_t>(piece)];
-    const bool has_before = is_of(grid.At(line, before), piece);
-    const bool has_after = is_of(grid.At(line, after), piece);
-    if (has_before && has_after) {
-      const double bend_m = double{grid.RangeAt(line, before)} - 2.0 * grid.RangeAt(line, column) + grid.RangeAt(line, after);
-      surface.bend += static_cast<std::int64_t>(std::abs(bend_m) * kBendsPerMetre + 0.5);
+    if (!std::isinf(before_m) && !std::isinf(after_m)) {
+      surface.bend += static_cast<std::int64_t>(std::abs(before_m - 2.0 * range_m + after_m) * kBendsPerMetre + 0.5);
       ++surface.num_bends;
     }
-    if (!has_before && !has_after) ++surface.num_lone;
+    if (std::isinf(before_m) && std::isinf(after_m)) ++surface.num_lone;
   }
 }
 
