@@ -21,7 +21,7 @@ struct Datum {
   double longitude_deg = kNan;
   double ellipsoid_height_m = kNan;
 
-  /// A frame of its own, not on the earth: latitude and longitude are NaN, the height is its number.
+  /// A frame of its own, not on the earth: latitude and longitude are NaN, the height is its number: when it began, ms since 1970.
   bool IsRelative() const { return std::isnan(latitude_deg) && std::isnan(longitude_deg) && std::isfinite(ellipsoid_height_m); }
 
   /// Not of a relative frame. The map frame; an unknown height counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of

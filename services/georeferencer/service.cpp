@@ -28,7 +28,7 @@ std::string_view PoseText(std::int32_t pose_status) {
     case pose_t::STATUS_RELATIVE_COASTING:
       return "no position on the earth: obstacles are in a frame of their own, which began where the boat was";
     case pose_t::STATUS_RELATIVE_TO_BOAT:
-      return "no position, and nothing stands in sight: obstacles are relative to the boat, as if it lay still";
+      return "no position, and the own motion is not known: obstacles are relative to the boat";
     default:
       return {};
   }

@@ -148,7 +148,7 @@ HealthReport Service::Report() const {
   if (!pose || (pose->heading_source == HeadingSource::kNone && !filter.has_had_heading())) add("no heading");
   if (pose && pose->heading_source == HeadingSource::kCourse) add("heading is only the course over ground: no compass or attitude sensor");
   if (pose && pose->status == PoseStatus::kRelativeToBoat) {
-    add("POSE is relative to the boat: no position, and nothing that stands in sight; its own motion counts as none");
+    add("POSE is relative to the boat: no position, and the lidar does not tell the own motion");
   } else if (pose && (pose->status == PoseStatus::kRelative || pose->status == PoseStatus::kRelativeCoasting)) {
     add("POSE is relative: it began where the boat was, and its way is by the lidar");
   }

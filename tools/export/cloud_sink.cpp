@@ -111,7 +111,7 @@ class CloudSink final : public Sink {
       if (is_other) {
         datum_ = datum;
         map_.reset();
-        if (datum.IsSameAs(datum)) map_.emplace(datum.Map());
+        if (datum.IsSameAs(datum) && !datum.IsRelative()) map_.emplace(datum.Map());
       }
     }
     writer_->BeginScan(scan.seq, scan.utime_us, datum_);

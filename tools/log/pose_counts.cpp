@@ -45,7 +45,7 @@ std::string PoseCounts::RelativeInWords() const {
   };
   return "for " + seconds(num_relative - num_to_boat) + " of " + seconds(num_poses) +
          " s they are in a frame that began where the boat was, its own motion by the lidar; for " + seconds(num_to_boat) +
-         " s nothing that stands was in sight, and they are relative to the boat as if it lay still";
+         " s the lidar did not tell the own motion, and they are relative to the boat";
 }
 
 }  // namespace lookout::log

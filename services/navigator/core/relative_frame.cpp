@@ -15,6 +15,10 @@ constexpr double kBeginVariance = 1e-8;
 // Motion that is only propagated: a boat changes speed by so much in a second, and its rate of turn.
 constexpr double kAccelerationSdMps2 = 0.5;
 constexpr double kTurnAccelerationSdRadps2 = 0.1;
+// An error of heading that is older turns the map and all that lies on it alike: between what is seen now and a moment ago there is none.
+constexpr std::chrono::seconds kHeadingMemory{3};
+// A boat that coasts may turn by more, but a greater deviation would take what stands at 50 m for anything within several metres.
+constexpr double kMostHeadingSdRad = DegToRad(3.0);
 
 double Seconds(std::chrono::microseconds duration) { return static_cast<double>(duration.count()) * 1e-6; }
 
@@ -24,6 +28,12 @@ Eigen::Matrix2d RotationFrameVessel(double heading_rad) {
   Eigen::Matrix2d rotation;
   rotation << sin, -cos, cos, sin;
   return rotation;
+}
+
+// What differs in each frame, of other runs of the process too.
+double NumberOf(Utime begin) {
+  const auto since_1970 = std::chrono::duration_cast<std::chrono::milliseconds>(begin.time_since_epoch()).count();
+  return static_cast<double>(std::max<std::int64_t>(1, since_1970));  // readers refuse less
 }
 
 }  // namespace
@@ -117,6 +127,7 @@ void RelativeFrame::Add(const OdometryMotion& motion) {
 void RelativeFrame::Activate(const Pose& earth) {
   is_active_ = true;
   ++num_frames_;
+  number_ = NumberOf(earth.time);
   if (nodes_.empty()) nodes_.push_back({earth.time});
   const Node here = NodeAt(earth.time);
   const bool has_heading = earth.status == PoseStatus::kNoPosition;
@@ -134,6 +145,8 @@ Pose RelativeFrame::At(const Pose& earth, double tilt_sd_rad) {
   if (earth.status == PoseStatus::kOk || earth.status == PoseStatus::kCoasting) {
     last_earth_ = earth.time;
     is_active_ = false;
+    nodes_.clear();
+    last_known_.reset();
     return earth;
   }
   if (!has_motion_) return earth;
@@ -146,26 +159,30 @@ Pose RelativeFrame::At(const Pose& earth, double tilt_sd_rad) {
   Pose pose = earth;
   pose.status = since <= kFresh ? PoseStatus::kRelative : since <= kCoasts ? PoseStatus::kRelativeCoasting : PoseStatus::kRelativeToBoat;
   pose.heading_source = heading_source_;
-  pose.datum = {kNan, kNan, static_cast<double>(num_frames_)};
+  pose.datum = {kNan, kNan, number_};
   // A receiver alone still says where the boat is, but not which way the map lies.
   if (earth.status != PoseStatus::kNoHeading) pose.latitude_deg = pose.longitude_deg = pose.ellipsoid_height_m = kNan;
   pose.p_map_m = {node.p_m.x(), node.p_m.y(), 0.0};
   pose.heading_rad = node.heading_rad;
-  const bool moves = pose.status != PoseStatus::kRelativeToBoat;
-  const Eigen::Vector2d velocity_mps = moves ? Eigen::Vector2d(RotationFrameVessel(node.heading_rad) * rates_.head<2>()) : Eigen::Vector2d::Zero();
-  pose.velocity_map_mps = {velocity_mps.x(), velocity_mps.y(), 0.0};
+  pose.velocity_map_mps = Eigen::Vector3d::Constant(kNan);
   pose.covariance = PoseCovariance::Zero();
   pose.covariance.topLeftCorner<2, 2>() = node.covariance.topLeftCorner<2, 2>();
-  pose.covariance(8, 8) = node.covariance(2, 2);
-  pose.covariance.block<2, 1>(0, 8) = node.covariance.block<2, 1>(0, 2);
-  pose.covariance.block<1, 2>(8, 0) = node.covariance.block<1, 2>(2, 0);
-  const auto rotation = RotationFrameVessel(node.heading_rad);
-  if (moves) pose.covariance.block<2, 2>(3, 3) = rotation * rates_covariance_.topLeftCorner<2, 2>() * rotation.transpose();
+  const double turned_variance = node.covariance(2, 2) - NodeAt(earth.time - kHeadingMemory).covariance(2, 2);
+  pose.covariance(8, 8) = std::clamp(turned_variance, kBeginVariance, kMostHeadingSdRad * kMostHeadingSdRad);
   for (const int tilt : {6, 7}) pose.covariance(tilt, tilt) = earth.has_attitude ? earth.covariance(tilt, tilt) : tilt_sd_rad * tilt_sd_rad;
-  for (const int height : {2, 5}) {
-    pose.covariance.row(height).setConstant(kNan);
-    pose.covariance.col(height).setConstant(kNan);
+  const auto set_unknown = [&pose](int number) {
+    pose.covariance.row(number).setConstant(kNan);
+    pose.covariance.col(number).setConstant(kNan);
+  };
+  for (const int height : {2, 5}) set_unknown(height);
+  if (pose.status == PoseStatus::kRelativeToBoat) {
+    for (const int velocity : {3, 4}) set_unknown(velocity);
+    return pose;
   }
+  const auto rotation = RotationFrameVessel(node.heading_rad);
+  const Eigen::Vector2d velocity_mps = rotation * rates_.head<2>();
+  pose.velocity_map_mps = {velocity_mps.x(), velocity_mps.y(), 0.0};
+  pose.covariance.block<2, 2>(3, 3) = rotation * rates_covariance_.topLeftCorner<2, 2>() * rotation.transpose();
   return pose;
 }
 

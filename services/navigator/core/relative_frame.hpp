@@ -21,7 +21,7 @@ class RelativeFrame {
   static constexpr std::chrono::seconds kBeginsWithSentences{3};
   /// And so long after the last pose on the earth: by then tracks have ended.
   static constexpr std::chrono::seconds kBeginsAfterEarth{30};
-  /// Without a known motion the boat goes on as it went for so long; then its own motion counts as none.
+  /// Without a known motion the boat goes on as it went for so long; then its own motion is not known.
   static constexpr std::chrono::milliseconds kFresh{350};
   static constexpr std::chrono::seconds kCoasts{3};
 
@@ -34,7 +34,8 @@ class RelativeFrame {
 
   /// @param earth  the pose by all other inputs; of one that places nothing its roll, pitch, heave and heading are used
   /// @param tilt_sd_rad  of roll and pitch that are not measured
-  /// @return the same where it is placed, or no motion has come; else the pose in this frame
+  /// @return the same where it is placed, or no motion has come; else the pose in this frame. Its variance of heading is that of the turn in the last
+  ///         3 s. Where the own motion is not known the pose stays, and velocity and its covariance are NaN
   Pose At(const Pose& earth, double tilt_sd_rad);
 
   std::int64_t num_frames() const { return num_frames_; }
@@ -59,6 +60,7 @@ class RelativeFrame {
   bool has_motion_ = false;  // one has come, known or not
   bool is_active_ = false;
   std::int64_t num_frames_ = 0;
+  double number_ = kNan;  // height of the datum: begin of the frame, whole milliseconds since 1970
   HeadingSource heading_source_ = HeadingSource::kNone;
   std::deque<Node> nodes_;
   // Forward, port (m/s), turn (rad/s, clockwise) at the last node, and their covariance.

@@ -108,10 +108,10 @@ double Tracker::Memory::Advance(const ScanInput& scan) {
   if (!scan.own) return since_s;
   own = scan.own;
   datum = scan.datum;
-  // A fix after a gap, or a filter that settles, moves everything at once.
+  // A fix after a gap, or a filter that settles, moves everything at once. In a frame that is not on the earth nothing corrects the place.
   const auto& covariance = scan.own->covariance;
   const double now_m2 = covariance(0, 0) + covariance(1, 1) + covariance(4, 4) * kTypicalRangeM * kTypicalRangeM;
-  if (now_m2 < 0.5 * own_m2 && std::sqrt(own_m2) - std::sqrt(now_m2) > kLeastSettlingM) {
+  if (!datum.IsRelative() && now_m2 < 0.5 * own_m2 && std::sqrt(own_m2) - std::sqrt(now_m2) > kLeastSettlingM) {
     known.settled_sd_m = std::sqrt(own_m2);
     own_m2 = now_m2;
   }

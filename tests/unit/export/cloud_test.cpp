@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -134,7 +135,7 @@ class Clouds : public ExportTest {
     }
     for (int k = 0; has_poses && k < 25; ++k) AddPose(kStartUs + 100'000 * num_scans + 20'000 * k);
   }
-  void AddPose(std::int64_t utime_us) {
+  void AddPose(std::int64_t utime_us, bool is_relative = false) {
     pose_t pose{};
     pose.utime_us = utime_us;
     pose.datum_latitude_deg = 43.5;
@@ -143,6 +144,11 @@ class Clouds : public ExportTest {
     pose.heading_source = pose_t::HEADING_HDT;
     pose.heading_rad = std::numbers::pi / 2;
     for (int i = 0; i < 9; ++i) pose.covariance[i][i] = 1.0;
+    if (is_relative) {
+      pose.status = pose_t::STATUS_RELATIVE;
+      pose.datum_latitude_deg = pose.datum_longitude_deg = std::numeric_limits<double>::quiet_NaN();
+      pose.datum_ellipsoid_height_m = 1.8e12;
+    }
     Add(bus::kPose, pose);
   }
   Request Of(const std::string& format, CloudFrame frame = CloudFrame::kLidar) {
@@ -261,6 +267,17 @@ TEST_F(Clouds, OnTheEarthNeedPoses) {
   AddScans(1, false);
   EXPECT_EQ(Export(Of("las", CloudFrame::kEarth)), kExitFailed);
   EXPECT_NE(errors_.find("no return has a place on the earth"), std::string::npos) << errors_;
+}
+
+// Not even where it would be on the map: degrees of a frame that began anywhere are none.
+TEST_F(Clouds, OnTheEarthNeedAFrameOnTheEarth) {
+  AddBoat();
+  AddScans(1, false);
+  for (int k = 0; k < 60; ++k) AddPose(kStartUs + 20'000 * k, true);
+  for (const auto* format : {"las", "pcd"}) {
+    EXPECT_EQ(Export(Of(format, CloudFrame::kEarth)), kExitFailed) << format;
+    EXPECT_NE(errors_.find("no return has a place on the earth"), std::string::npos) << errors_;
+  }
 }
 
 // More than is written at once: the head is mended in the file.

@@ -1,6 +1,7 @@
 // The frame of its own where the earth is not known.
 #include "services/navigator/core/relative_frame.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "common/core/angles.hpp"
@@ -88,7 +89,7 @@ TEST(RelativeFrame, BeginsWhereTheBoatIsAndGoesWithIt) {
   EXPECT_NEAR(pose.velocity_map_mps.y(), 2.0, 1e-9);
   EXPECT_NEAR(pose.heading_rad, 0.0, 1e-9);
   EXPECT_TRUE(std::isnan(pose.latitude_deg) && std::isnan(pose.datum.latitude_deg));
-  EXPECT_EQ(pose.datum.ellipsoid_height_m, 1.0);
+  EXPECT_EQ(pose.datum.ellipsoid_height_m, 1'700'000'000'500.0) << "when it began";
   EXPECT_GT(pose.covariance(1, 1), 24e-4);
   EXPECT_NEAR(pose.covariance(6, 6), kTiltSdRad * kTiltSdRad, 1e-12);
 }
@@ -120,7 +121,10 @@ TEST(RelativeFrame, WithoutAKnownMotionTheBoatGoesOnForThreeSecondsAndThenStands
   const auto still = frame.At(Unknown(last + 10s), kTiltSdRad);
   EXPECT_EQ(still.status, PoseStatus::kRelativeToBoat);
   EXPECT_NEAR(still.p_map_m.y(), 3.0, 1e-6);
-  EXPECT_EQ(still.velocity_map_mps.norm(), 0.0);
+  // Not 0: a boat that lies still would be told less.
+  EXPECT_TRUE(still.velocity_map_mps.array().isNaN().all());
+  EXPECT_TRUE(still.covariance.middleRows<3>(3).array().isNaN().all() && still.covariance.middleCols<3>(3).array().isNaN().all());
+  EXPECT_TRUE(coasting.velocity_map_mps.allFinite());
   // It goes on from there, in the same frame.
   frame.Add(Straight(last + 10s + 100ms, 0.5));
   const auto again = frame.At(Unknown(last + 10s + 100ms), kTiltSdRad);
@@ -137,7 +141,33 @@ TEST(RelativeFrame, NothingThatStandsMeansRelativeToTheBoat) {
   EXPECT_EQ(frame.At(Unknown(kStart + 400ms), kTiltSdRad).status, PoseStatus::kUnknown);
   const auto pose = frame.At(Unknown(kStart + 500ms), kTiltSdRad);
   EXPECT_EQ(pose.status, PoseStatus::kRelativeToBoat);
-  EXPECT_EQ(pose.p_map_m.norm() + pose.velocity_map_mps.norm(), 0.0);
+  EXPECT_EQ(pose.p_map_m.norm(), 0.0);
+  EXPECT_TRUE(pose.velocity_map_mps.array().isNaN().all());
+}
+
+// Georeferencer adds it to the place of each obstacle, and an error that all share is no noise.
+TEST(RelativeFrame, TheVarianceOfHeadingIsShortTerm) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  Utime time = kStart;
+  const auto go = [&](std::chrono::milliseconds duration) {
+    for (const Utime end = time + duration; time < end;) {
+      time += 100ms;
+      frame.Add(Straight(time, 0.2));
+      frame.At(Unknown(time), kTiltSdRad);
+    }
+    return frame.At(Unknown(time), kTiltSdRad).covariance(8, 8);
+  };
+  go(5s);
+  EXPECT_NEAR(go(60s), 30e-6, 1e-9) << "30 motions, each of 1e-6";
+  double greatest = 0.0;
+  for (const Utime end = time + 20s; time < end; time += 20ms) greatest = std::max(greatest, frame.At(Unknown(time), kTiltSdRad).covariance(8, 8));
+  EXPECT_GT(greatest, DegToRad(1.0) * DegToRad(1.0));
+  EXPECT_LE(greatest, DegToRad(3.0) * DegToRad(3.0) * (1.0 + 1e-12));
+  const auto still = frame.At(Unknown(time), kTiltSdRad);
+  EXPECT_EQ(still.status, PoseStatus::kRelativeToBoat);
+  EXPECT_LT(still.covariance(8, 8), 1e-6);
+  EXPECT_NEAR(go(4s), 30e-6, 1e-9) << "not what was lost in the gap";
 }
 
 TEST(RelativeFrame, TheEarthComesFirst) {
@@ -151,8 +181,26 @@ TEST(RelativeFrame, TheEarthComesFirst) {
   EXPECT_EQ(frame.At(Unknown(kStart + 20s), kTiltSdRad).status, PoseStatus::kUnknown);
   EXPECT_TRUE(frame.Wants(kStart + 32s));
   const auto second = frame.At(Unknown(kStart + 32s), kTiltSdRad);
-  EXPECT_EQ(second.datum.ellipsoid_height_m, 2.0);
+  EXPECT_EQ(second.datum.ellipsoid_height_m, 1'700'000'032'000.0);
   EXPECT_NEAR(second.p_map_m.norm(), 0.0, 1e-12);
+  // Nothing of the first frame goes on in it.
+  EXPECT_EQ(second.status, PoseStatus::kRelativeToBoat);
+  frame.Add(Straight(kStart + 32s + 100ms, 0.3));
+  const auto after = frame.At(Unknown(kStart + 32s + 100ms), kTiltSdRad);
+  EXPECT_NEAR(after.p_map_m.y(), 0.3, 1e-9);
+  EXPECT_LT(after.covariance(1, 1), 2e-4);
+}
+
+// Both would count as one map, and acknowledgements be taken over by places in it.
+TEST(RelativeFrame, HasAnotherNumberAfterANewStart) {
+  const auto number_of = [](Utime start) {
+    RelativeFrame frame;
+    frame.Begin(start);
+    frame.Add({start, start + 100ms});
+    return frame.At(Unknown(start + 500ms), kTiltSdRad).datum.ellipsoid_height_m;
+  };
+  EXPECT_NE(number_of(kStart), number_of(kStart + 200ms));
+  EXPECT_EQ(number_of(kStart), number_of(kStart));
 }
 
 TEST(RelativeFrame, WaitsForSentencesThatCome) {

@@ -1,9 +1,11 @@
 // Alerts, acknowledgements and orders of the tracker as a process.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/bus/decode.hpp"
@@ -249,6 +251,105 @@ TEST_F(TrackerService, TakesAnAcknowledgementOverWhereTheLidarBeginsAnew) {
   EXPECT_EQ(again->state, alert_t::STATE_ACKNOWLEDGED);
   EXPECT_LE(num_active, 2);
 }
+
+// A thing ahead that comes nearer in a frame that is not on the earth.
+class RelativeToTheBoat : public TrackerService {
+ protected:
+  static constexpr double kFrame = 1.8e12;
+
+  static void Move(pose_t& pose, double number) {
+    pose.status = pose_t::STATUS_RELATIVE_TO_BOAT;
+    pose.datum_latitude_deg = pose.datum_longitude_deg = pose.latitude_deg = pose.longitude_deg = pose.ellipsoid_height_m = kNan;
+    pose.datum_ellipsoid_height_m = number;
+    for (int i = 0; i < 9; ++i) {
+      for (int k = 0; k < 9; ++k) {
+        const bool is_unknown = (i >= 2 && i <= 5) || (k >= 2 && k <= 5);
+        pose.covariance[i][k] = is_unknown ? kNan : i == k ? 1e-6 : 0.0;
+      }
+    }
+    for (double& part : pose.velocity_map_mps) part = kNan;
+  }
+  // @param frame  its number; NaN: on the earth, the boat lies still
+  void SendScanOf(int number, double north_m, double frame) {
+    const auto offset_us = test::kScanUs * number;
+    auto message = test::MakeObstacles(offset_us, number, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {0.0, north_m})});
+    for (auto pose_us = offset_us; pose_us < offset_us + test::kScanUs; pose_us += 20'000) {
+      auto pose = test::MakePose(pose_us, pose_us / 20'000);
+      if (std::isfinite(frame)) Move(pose, frame);
+      Send(bus::kPose, pose);
+    }
+    if (std::isfinite(frame)) {
+      message.datum_latitude_deg = message.datum_longitude_deg = kNan;
+      message.datum_ellipsoid_height_m = frame;
+      message.obstacles[0].latitude_deg = message.obstacles[0].longitude_deg = kNan;
+    }
+    SendSight(number, number);
+    Send(bus::kObstacles, message);
+  }
+  const alert_t* Told(std::int32_t state) const {
+    if (alerts_.empty()) return nullptr;
+    const auto found = std::ranges::find(alerts_.back().alerts, state, &alert_t::state);
+    return found == alerts_.back().alerts.end() ? nullptr : &*found;
+  }
+  // At 3 m/s, until the warning comes and is acknowledged.
+  // @return the number of the next scan; 0: no warning came
+  int AcknowledgeTheWarning(double frame) {
+    for (int i = 0; i < 200; ++i) {
+      SendScanOf(i, 60.0 - 0.3 * i, frame);
+      const auto* const alert = Told(alert_t::STATE_ACTIVE);
+      if (alert == nullptr || alert->level != alert_t::LEVEL_WARNING) continue;
+      alert_ack_t acknowledgement{};
+      acknowledgement.source = "page";
+      acknowledgement.alert_id = alert->id;
+      acknowledgement.alert_raised_utime_us = alert->raised_utime_us;
+      Send(bus::kAlertAck, acknowledgement);
+      SendScanOf(i + 1, 60.0 - 0.3 * (i + 1), frame);
+      return i + 2;
+    }
+    return 0;
+  }
+};
+
+// An own velocity of 0 was taken for a boat in her berth, and there alerts are muted.
+TEST_F(RelativeToTheBoat, AWarningComesOfWhatComesNearer) {
+  const int next = AcknowledgeTheWarning(kFrame);
+  ASSERT_GT(next, 0) << "no warning";
+  EXPECT_LT(next, 185) << "before it is within 5 m";
+  const auto* const alert = Told(alert_t::STATE_ACKNOWLEDGED);
+  ASSERT_NE(alert, nullptr);
+  EXPECT_EQ(alert->cause, alert_t::CAUSE_CLOSEST_APPROACH);
+  EXPECT_TRUE(std::isnan(alert->latitude_deg));
+  ASSERT_EQ(tracks_.back().num_tracks, 1);
+  EXPECT_NEAR(tracks_.back().tracks[0].velocity_map_mps[1], -3.0, 0.5);
+  EXPECT_LT(tracks_.back().tracks[0].cpa_m, 2.0F);
+}
+
+TEST_F(RelativeToTheBoat, AThingThatKeepsItsPlaceBesideTheBoatIsATrack) {
+  for (int i = 0; i < 40; ++i) SendScanOf(i, 30.0, kFrame);
+  ASSERT_EQ(tracks_.back().num_tracks, 1);
+  EXPECT_EQ(tracks_.back().tracks[0].status, track_t::STATUS_CONFIRMED);
+  EXPECT_EQ(Told(alert_t::STATE_ACTIVE), nullptr);
+}
+
+class ANewFrame : public RelativeToTheBoat, public ::testing::WithParamInterface<std::pair<double, double>> {};
+
+// The axes of two frames differ: another thing may lie where the old one would be.
+TEST_P(ANewFrame, TakesNoAcknowledgementOver) {
+  const auto& [before, after] = GetParam();
+  const int first = AcknowledgeTheWarning(before);
+  ASSERT_GT(first, 0);
+  int num_active = 0;
+  for (int i = first; i < first + 20; ++i) {
+    SendScanOf(i, 60.0 - 0.3 * i, after);
+    num_active += Told(alert_t::STATE_ACTIVE) != nullptr ? 1 : 0;
+  }
+  EXPECT_EQ(Count("restarts_by_datum"), 1);
+  EXPECT_GT(num_active, 5) << "people are asked again";
+  EXPECT_EQ(Told(alert_t::STATE_ACKNOWLEDGED), nullptr);
+}
+
+INSTANTIATE_TEST_SUITE_P(RelativeToTheBoat, ANewFrame,
+                         ::testing::Values(std::pair(1.8e12, kNan), std::pair(kNan, 1.8e12), std::pair(1.8e12, 1.9e12)));
 
 }  // namespace
 }  // namespace lookout::tracker

@@ -22,6 +22,11 @@ const ten = [1, 1, 1, 1, 1, 2, 2, 2, -5, -5];
 test("the same by other numbers is the same", () => {
   assert.deepEqual(differing(picture(ten, [track(1)], [alert(1)]), picture(ten.map((label) => (label > 0 ? label + 4 : label)), [track(1, { id: 9 })], [alert(9)])), []);
 });
+test("a track without a place on the earth is compared on the map", () => {
+  const relative = (north_m: number) => track(1, { latitude_deg: NaN, longitude_deg: NaN, position_map_m: Float64Array.of(10, north_m) });
+  assert.deepEqual(differing(picture(ten, [relative(0)]), picture(ten, [relative(1)])), []);
+  assert.deepEqual(differing(picture(ten, [relative(0)]), picture(ten, [relative(1)]), { ...kLimits, moved_m: 0.5 }), ["place 1 1"]);
+});
 // "To the next that differs" stopped at each scan: some return is always told differently.
 test("other labels matter from the share on that is chosen", () => {
   const one = [...ten.slice(0, 9), 2];

@@ -77,8 +77,11 @@ function pairTracks(first: Picture, second: Picture, segments: ReadonlyMap<numbe
   return pairs;
 }
 
-// How far apart two say that a track is: on the earth, since their map frames may have other datums.
+// How far apart two say that a track is: on the earth, since their map frames may have other datums; on the map where a frame is not on the earth.
 function apart_m(one: Track, other: Track): number {
+  if (Number.isNaN(one.latitude_deg) || Number.isNaN(other.latitude_deg)) {
+    return Math.hypot(one.position_map_m[0]! - other.position_map_m[0]!, one.position_map_m[1]! - other.position_map_m[1]!);
+  }
   const [east, north] = offset(one.latitude_deg, one.longitude_deg, other.latitude_deg, other.longitude_deg);
   return Math.hypot(east, north);
 }
