@@ -21,13 +21,14 @@ function(lookout_service_names table names_variable)
   set(${names_variable} ${rows} PARENT_SCOPE)
 endfunction()
 
-# Makes a systemd unit for each row.
+# Makes a systemd unit for each row, and one for a second lidar.
 #   lookout_make_units(TABLE UNITS_FOLDER)  sets start_order, the names in the order in which a boat starts them
 function(lookout_make_units table units_folder)
   lookout_service_rows(${table} rows)
   list(REVERSE rows)  # the table is in the order of the data, readers start before what they read from
   set(names "")
   set(before_it "")
+  set(condition "")
   foreach(row ${rows})
     string(REGEX MATCH "{[ \n]*\"([a-z0-9]+)\",[ \n]*\"[a-z0-9]+\",[ \n]*\"([^\"]+)\",[ \n]*([0-9]+),[ \n]*\"([a-z]+)\"" row "${row}")
     set(name ${CMAKE_MATCH_1})
@@ -46,6 +47,14 @@ function(lookout_make_units table units_folder)
     list(TRANSFORM names REPLACE "(.+)" "lookout-\\1.service" OUTPUT_VARIABLE before_it)
     list(JOIN before_it " " before_it)
   endforeach()
+  # The second lidar of a boat is the lidar's program once more, where it has a config. It has no row: its outputs are the lidar's.
+  set(name lidar_2)
+  set(purpose "scans of the second lidar, where there is lidar_2.txtpb")
+  set(watchdog_s 10)
+  set(needs_lines "PrivateDevices=yes\nDevicePolicy=closed")
+  set(condition "ConditionPathExists=${CMAKE_INSTALL_FULL_SYSCONFDIR}/lookout/boat/lidar_2.txtpb")
+  configure_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/systemd/process.service.in ${units_folder}/lookout-${name}.service @ONLY)
+  string(APPEND before_it " lookout-lidar_2.service")
   set(all_services "lookout-route.service lookout-firewall.service ${before_it}")
   foreach(unit lookout.target lookout-route.service lookout-firewall.service)
     configure_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/systemd/${unit}.in ${units_folder}/${unit} @ONLY)

@@ -102,6 +102,8 @@ inside systemd-analyze verify lookout-lidar.service || fail "verify with the dro
 inside systemd-analyze security --no-pager --offline=true --threshold=$greatest_exposure lookout-lidar.service >"$work/security.txt" || fail "exposure with the drop-in"
 echo "with live-capture.conf: $(tail -n 1 "$work/security.txt")"
 rm -r "$root/etc/systemd/system/lookout-lidar.service.d"
+# The second lidar's waits for its config, which the package does not bring.
+mapfile -t units < <(printf '%s\n' "${units[@]}" | grep -vx lidar_2)
 
 nspawn=(systemd-nspawn -q -D "$root" --machine=lookout-check --private-network --register=no --keep-unit)
 start_by_hand() {

@@ -84,6 +84,7 @@ void Service::AdvanceTo(Utime host_time) {
   if (second_watch_) second_watch_->AdvanceTo(host_time);
   pose_watch_.AdvanceTo(host_time);
   Publish(georeferencer_.AdvanceTo(host_time));
+  untimely_.Note(georeferencer_.num_untimely(), passed_.Advance(host_time));
 }
 
 void Service::Finish() { Publish(georeferencer_.Finish()); }
@@ -105,6 +106,9 @@ HealthReport Service::Report() const {
 
   if (const auto text = segments_watch_.Complaint(); !text.empty()) report.Degrade(text);
   if (second_watch_ && !second_watch_->Complaint().empty()) report.Degrade(second_watch_->Complaint());
+  if (untimely_.HasGrown(passed_.passed()) && !segments_watch_.is_silent()) {
+    report.Degrade("SEGMENTS_2 do not fit the time of SEGMENTS: the clocks of the two lidars differ, or the second's segments are late");
+  }
   if (pose_watch_.is_silent()) {
     report.Degrade(pose_watch_.Complaint());
   } else {

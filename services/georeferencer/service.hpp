@@ -8,6 +8,7 @@
 #include "common/bus/bus.hpp"
 #include "common/core/health.hpp"
 #include "common/core/input_watch.hpp"
+#include "common/core/recently.hpp"
 #include "common/core/utime.hpp"
 #include "common/messages/pose_message.hpp"
 #include "lookout/pose_t.hpp"
@@ -53,6 +54,8 @@ class Service {
   std::optional<Utime> now_;
   InputWatch segments_watch_{bus::kSegments.name};
   std::optional<InputWatch> second_watch_;  // where there is a second lidar
+  PassedTime passed_{std::chrono::seconds(2)};
+  Recently untimely_;
   InputWatch pose_watch_{bus::kPose.name};
 };
 

@@ -1,6 +1,7 @@
 #include "services/lidar/sensor_beams.hpp"
 
 #include <chrono>
+#include <stop_token>
 
 #include "services/lidar/io/sensor_request.hpp"
 
@@ -8,7 +9,7 @@ namespace lookout::lidar {
 
 namespace {
 
-// A sensor answers within some tenths of a second. The process waits for no longer at its end.
+// A sensor answers within some tenths of a second.
 constexpr std::chrono::seconds kTimeLimit(3);
 constexpr std::chrono::seconds kAskPeriod(10);
 
@@ -20,7 +21,7 @@ SensorBeams::SensorBeams(const Params& params, Service& service) : service_(serv
   const SensorAddress sensor{params.other->sensor_address, params.other->sensor_port};
   origin_ = "the sensor at " + sensor.host;
   const auto request = params.other->model == OtherModel::kOuster ? &RequestOusterMetadata : &RequestHesaiAngles;
-  fetcher_.emplace([sensor, request] { return request(sensor, kTimeLimit); });
+  fetcher_.emplace([sensor, request](const std::stop_token& stop) { return request(sensor, kTimeLimit, stop); });
 }
 
 std::string SensorBeams::Poll(Utime now) {

@@ -108,9 +108,13 @@ void Survey::Add(Utime host_time, const std::string& source_address, const std::
       if (second_port_.size() < kMaxHeard) second_port_.emplace(source_address, port);
       return;
     }
-    const auto name = found->second.speaker.name;
+    const auto before = found->second.speaker;
     Identify(payload, found->second);
-    if (found->second.speaker.name.empty()) found->second.speaker.name = name;
+    if (found->second.speaker.name.empty()) {
+      // A datagram that tells nothing takes nothing back.
+      found->second.speaker = before;
+      return;
+    }
   }
   auto& [speaker, judge, reader, packet] = found->second;
   speaker.destination_address = destination_address;

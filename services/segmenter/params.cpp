@@ -38,6 +38,10 @@ void CheckRelations(const config::Segmenter& message, const std::filesystem::pat
   faults.ThrowIfAny();
 }
 
+double AboveWaterM(const config::BoatFacts& boat, const Eigen::Isometry3d& T_vessel_lidar) {
+  return boat.reference_point_above_water_m + T_vessel_lidar.translation().z();
+}
+
 }  // namespace
 
 Params LoadParams(const std::filesystem::path& config_folder) {
@@ -56,6 +60,7 @@ Lanes LoadLanes(const std::filesystem::path& config_folder) {
     lanes.second = lanes.first;
     lanes.second->filter.T_vessel_lidar = TransformVesselSensor(*boat.lidar_2);
     lanes.second->filter.field_of_view = {};
+    lanes.second->lookout.lidar_above_water_m = AboveWaterM(boat, lanes.second->filter.T_vessel_lidar);
   }
   return lanes;
 }
@@ -83,7 +88,7 @@ Params ToParams(const config::Segmenter& message, const config::BoatFacts& boat,
   params.min_segment_points = message.min_segment_points();
   params.method = message.method() == config::Segmenter::PAPER ? Method::kPaper : Method::kLookout;
   params.lookout = LookoutOf(message, file);
-  params.lookout.lidar_above_water_m = boat.reference_point_above_water_m + boat.T_vessel_lidar.translation().z();
+  params.lookout.lidar_above_water_m = AboveWaterM(boat, boat.T_vessel_lidar);
   return params;
 }
 

@@ -19,10 +19,10 @@ void Service::Add(const bus::Channel& scans, const bus::Channel& segments, const
 
 void Service::OnScan(const lidar_scan_t& message, Lane& lane) {
   lane.watch.Note();
-  last_fault_ = messages::FaultOf(message, bus::kMaxMessageBytes);
-  if (last_fault_) {
-    refusals_.Add(*last_fault_);
-    refused_at_ = time_.passed();
+  lane.last_fault = messages::FaultOf(message, bus::kMaxMessageBytes);
+  if (lane.last_fault) {
+    refusals_.Add(*lane.last_fault);
+    lane.refused_at = time_.passed();
     return;
   }
   const auto parts = lane.assembler.Add(message).whole;
@@ -49,9 +49,9 @@ HealthReport Service::Report() const {
   HealthReport report;
   for (const auto& lane : lanes_) {
     if (const auto text = lane.watch.Complaint(); !text.empty()) report.Degrade(text);
-  }
-  if (last_fault_ && time_.passed() - refused_at_ < Recently::kToldFor) {
-    report.Degrade("the latest LIDAR_SCAN was refused: " + std::string(*last_fault_));
+    if (lane.last_fault && time_.passed() - lane.refused_at < Recently::kToldFor) {
+      report.Degrade("the latest " + std::string(lane.watch.name()) + " was refused: " + std::string(*lane.last_fault));
+    }
   }
   auto counts = counts_;
   for (const auto& lane : lanes_) {

@@ -39,6 +39,8 @@ class Service {
     Segmenter segmenter;
     messages::PartAssembler<lidar_scan_t> assembler = {};
     InputWatch watch;
+    std::optional<messages::Fault> last_fault = {};  // of the latest message, if it was refused
+    std::chrono::microseconds refused_at{0};
   };
 
   void Add(const bus::Channel& scans, const bus::Channel& segments, const Params& params);
@@ -47,8 +49,6 @@ class Service {
   bus::Bus& bus_;
   std::list<Lane> lanes_;
   Counts<messages::kScanFaults> refusals_;
-  std::optional<messages::Fault> last_fault_;  // of the latest message, if it was refused
-  std::chrono::microseconds refused_at_{0};
   PassedTime time_{std::chrono::seconds(2)};
   static constexpr auto kCountNames =
       std::to_array<std::string_view>({"scans", "segments", "segments_too_small", "segments_over_limit", "returns_repeated", "scans_without_pieces",

@@ -80,14 +80,20 @@ message("start order: ${start_order}")
 TEXT
 units() { cmake -DSOURCE="$source_folder" -DWORK="$work" -P "$work/units.cmake" 2>&1; }
 sed 's/^    ServiceRow{"recorder"/    ServiceRow{"fuser", "fuser", "obstacles of two lidars", 12,\n               "network", "none", "none", {\&kObstacles}},\n&/' "$source_folder/common/bus/services.hpp" >"$work/services.hpp"
-grep -qxF 'start order: recorder;fuser;page;plotter;tracker;georeferencer;navigator;segmenter;lidar' <(units) || { units; fail "the start order with a row more"; }
+grep -qxF 'start order: recorder;fuser;page;plotter;tracker;georeferencer;navigator;odometer;segmenter;lidar' <(units) || { units; fail "the start order with a row more"; }
 grep -qxF 'Description=Lookout fuser: obstacles of two lidars' "$work/units/lookout-fuser.service" || fail "a row more has no unit"
 grep -qxF 'WatchdogSec=12s' "$work/units/lookout-fuser.service" || fail "the watchdog of a row more"
 grep -q 'After=.* lookout-fuser.service' "$work/units/lookout-georeferencer.service" || fail "a row more is not started before what it reads from"
 grep -q 'Wants=.* lookout-fuser.service ' "$work/units/lookout.target" || fail "a row more is not in the target"
+# A second lidar has a unit of its own, which starts nothing on a boat with one.
+grep -q 'ExecStart=.*/lookout-lidar_2 --config' "$work/units/lookout-lidar_2.service" || fail "the second lidar's unit starts another program"
+grep -q '^ConditionPathExists=.*/lookout/boat/lidar_2.txtpb$' "$work/units/lookout-lidar_2.service" || fail "the second lidar starts on every boat"
+grep -q '^ConditionPathExists' "$work/units/lookout-lidar.service" && fail "the first lidar waits for a file"
+grep -q 'Wants=.* lookout-lidar_2.service' "$work/units/lookout.target" || fail "the second lidar is not in the target"
+grep -q 'After=.* lookout-segmenter.service' "$work/units/lookout-lidar_2.service" || fail "the second lidar starts before what reads it"
 sed -i 's/"obstacles of two lidars", 12/"obstacles of two lidars", 12.5/' "$work/services.hpp"
 if units >"$work/refused.txt"; then fail "a wrong row is accepted"; fi
-grep -q '8 of 9 rows' "$work/refused.txt" || { cat "$work/refused.txt"; fail "a wrong row is not told"; }
+grep -q '9 of 10 rows' "$work/refused.txt" || { cat "$work/refused.txt"; fail "a wrong row is not told"; }
 
 up=$build_folder/bin/lookout-up
 config=$work/config
@@ -96,7 +102,7 @@ cp -r "$source_folder/config/demo" "$config"
 "$up" --version | grep -q '^lookout-up [0-9]' || fail "--version"
 "$up" --config "$config" --check >"$work/check.txt" || fail "--check of the demo"
 mapfile -t names < <("$up" --list)
-[ "${names[*]}" = "recorder page plotter tracker georeferencer navigator segmenter lidar" ] || fail "--list: ${names[*]}"
+[ "${names[*]}" = "recorder page plotter tracker georeferencer navigator odometer segmenter lidar" ] || fail "--list: ${names[*]}"
 for name in "${names[@]}"; do
   grep -q "^$name: ok\$" "$work/check.txt" || fail "--check does not tell of $name"
 done
@@ -109,6 +115,13 @@ for file in "$config"/*.txtpb; do
 done
 grep -q '^name: "demo"' "$work/values.txt" || fail "--check --values has no values"
 code=0; "$up" --config "$config" --values >/dev/null 2>&1 || code=$?; [ "$code" -eq 2 ] || fail "--values alone: exit code $code"
+# A second lidar, where it has a config.
+grep -q '^lidar_2: ' "$work/check.txt" && fail "--check tells of a second lidar where there is none"
+cp -r "$config" "$work/two"
+echo 'lidar_2 { x_m: -1.0 y_m: 0.2 z_m: 1.3 roll_deg: 0 pitch_deg: 0 yaw_deg: 180 }' >>"$work/two/boat.txtpb"
+sed 's/^cut_azimuth_deg/data_port: 2370\nposition_port: 8310\ncut_azimuth_deg/' "$work/two/lidar.txtpb" >"$work/two/lidar_2.txtpb"
+"$up" --config "$work/two" --check >"$work/two.txt" || fail "--check with two lidars"
+grep -q '^lidar_2: ok$' "$work/two.txt" || { cat "$work/two.txt"; fail "--check does not tell of lidar_2"; }
 # A folder of boats names them, in every program.
 for program in up "${names[@]}" doctor replay; do
   code=0; "$build_folder/bin/lookout-$program" --config "$source_folder/config" --check >"$work/boats.txt" 2>&1 || code=$?

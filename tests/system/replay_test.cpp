@@ -38,7 +38,8 @@ TEST_F(Replay, FromAnyLevelGivesTheSameBytes) {
   MakeDay();
   const auto day = PayloadsByChannel("day");
   const std::vector<std::pair<std::vector<std::string>, std::set<std::string>>> parts{
-      {{"--from", "LIDAR_SCAN"}, {"LIDAR_SCAN", "LIDAR_ODOMETRY", "NAV_RAW", "SEGMENTS", "GNSS_FIX", "ATTITUDE", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
+      {{"--from", "LIDAR_SCAN"},
+       {"LIDAR_SCAN", "LIDAR_ODOMETRY", "NAV_RAW", "SEGMENTS", "GNSS_FIX", "ATTITUDE", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
       {{"--from", "SEGMENTS", "--from", "POSE"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
       {{"--from", "OBSTACLES"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
       {{"--from", "POSE"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},

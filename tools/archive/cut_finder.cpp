@@ -14,7 +14,7 @@ Mark MarkOf(std::string_view channel, Bytes bytes) {
   constexpr std::size_t kMarkOffset = 24;  // behind fingerprint, utime_us and seq; 32 bits
   if (bytes.size() < kMarkOffset + 8) return Mark::kNone;
   const auto value = static_cast<std::int32_t>(bus::ReadU64BigEndian(bytes, kMarkOffset) >> 32U);
-  if (channel == bus::kLidarPackets.name) {
+  if (channel != bus::kNavRaw.name) {
     if ((value & lidar_packets_t::MARK_END) != 0) return Mark::kEnd;
     return (value & lidar_packets_t::MARK_START) != 0 ? Mark::kStart : Mark::kNone;
   }
@@ -30,7 +30,7 @@ void CutFinder::NoteTime(std::int64_t time_us) {
 }
 
 void CutFinder::AddRaw(std::string_view channel, std::int64_t time_us, Mark mark) {
-  auto& stream = streams_[channel == bus::kLidarPackets.name ? 0 : 1];
+  auto& stream = streams_[channel == bus::kLidarPackets.name ? 0 : channel == bus::kNavRaw.name ? 1 : 2];
   const auto latest_us = latest_us_;
   NoteTime(time_us);
   if (mark == Mark::kStart && stream.is_there && !pending_us_) {

@@ -38,7 +38,7 @@ class CutFinder {
   void NoteTime(std::int64_t time_us);
   void Confirm();
 
-  std::array<Stream, 2> streams_{};                               // lidar, navigator
+  std::array<Stream, 3> streams_{};                               // lidar, navigator, second lidar
   std::optional<std::pair<std::int64_t, std::int64_t>> tracker_;  // begin of the process of the last ALERTS: time, number of its scan
   std::optional<std::int64_t> pending_us_;
   bool is_new_tracker_ = false;  // since the pending cut

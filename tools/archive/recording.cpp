@@ -101,7 +101,8 @@ Recording LookAtLog(const std::filesystem::path& file) {
     if (channel.is_raw) ++num_raw;
     if (log::RunMarks::IsMarked(channel.name)) {
       const auto mark = MarkOf(channel.name, event->bytes);
-      if (const auto header = bus::ReadHeader(event->bytes)) {
+      const auto header = bus::ReadHeader(event->bytes);
+      if (header && channel.name != bus::kLidarPackets2.name) {
         AddTo(channel.name == bus::kLidarPackets.name ? found.lidar : found.navigator, mark, header->seq);
       }
       cuts.AddRaw(channel.name, time_us, mark);

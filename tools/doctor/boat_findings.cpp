@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "common/config/boat.hpp"
@@ -66,8 +67,10 @@ Finding CheckLidarDirection(const config::BoatFacts& boat) {
   return Ok(kMountingSubject, text);
 }
 
-double LowestBeamRad(const ConfigSeen& config) {
+// nullopt: the beams are the sensor's to tell, and it is not asked here.
+std::optional<double> LowestBeamRad(const ConfigSeen& config) {
   if (config.lidar && config.lidar->other) {
+    if (config.lidar->other->beam_text.empty() && lidar::RowOf(config.lidar->other->model).needs_beam_file) return std::nullopt;
     return lidar::MakeReader(config.lidar->other->model, config.lidar->other->beam_text)->head().beams.front().elevation_rad;
   }
   const bool is_hi_res = config.lidar && config.lidar->decoder.model == vlp16::ModelChoice::kPuckHiRes;
@@ -89,13 +92,13 @@ Findings CheckMounting(const ConfigSeen& config) {
     const auto grade = remark.is_under_water ? Grade::kFault : remark.cure.empty() ? Grade::kOk : Grade::kWarning;
     findings.push_back({grade, kMountingSubject, remark.words, remark.cure});
   }
-  const double lowest_rad = LowestBeamRad(config);
+  const auto lowest_rad = LowestBeamRad(config);
   const double height_m = lidar_z_m + boat.reference_point_above_water_m;
-  if (height_m > 0.0 && lowest_rad < 0.0) {
+  if (height_m > 0.0 && lowest_rad && *lowest_rad < 0.0) {
     findings.push_back(
         Ok(kMountingSubject, fmt::format("with the boat level on calm water the lowest beam meets the water {} m from the lidar: what lies below "
                                          "that beam is not seen",
-                                         Fixed(height_m / std::tan(-lowest_rad), 1))));
+                                         Fixed(height_m / std::tan(-*lowest_rad), 1))));
   }
   return findings;
 }

@@ -134,7 +134,7 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
     check(file_name, [&] { service.load(config_folder); });
   }
   check("lidar.txtpb", [&] { seen.lidar = lidar::LoadChecked(config_folder); });
-  if (lidar::HasSecond(config_folder)) check("lidar_2.txtpb", [&] { lidar::LoadChecked(config_folder, 2); });
+  if (lidar::HasSecond(config_folder)) check("lidar_2.txtpb", [&] { seen.lidar_2 = lidar::LoadChecked(config_folder, 2); });
   // Values for other findings. Faults of these files are told already.
   const auto look = [](const std::function<void()>& load) { config::FaultList().Try(load); };
   look([&] { seen.navigation = navigator::LoadParams(config_folder); });

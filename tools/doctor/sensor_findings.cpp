@@ -48,8 +48,9 @@ std::string SpeakerText(const lidar::Speaker& speaker) {
   return text + ": " + Count(speaker.num_packets, "packet") + " of " + std::to_string(speaker.size_bytes) + " bytes";
 }
 
-// What is read does not fit what the metadata file says; nullopt where it does.
+// What is read does not fit what the metadata file says; nullopt where it does, or where the sensor itself is asked.
 std::optional<Finding> CheckMetadata(const lidar::Speaker& speaker, const lidar::Params& config) {
+  if (config.other->beam_text.empty()) return std::nullopt;
   const auto metadata = lidar::ParseOusterMetadata(config.other->beam_text);
   const lidar::OusterLayout told{metadata.profile, metadata.pixels_per_column, metadata.columns_per_packet};
   if (std::ranges::find(speaker.layouts, told) != speaker.layouts.end()) return std::nullopt;
@@ -58,26 +59,44 @@ std::optional<Finding> CheckMetadata(const lidar::Speaker& speaker, const lidar:
                    (speaker.source_address.empty() ? "SENSOR" : speaker.source_address) + "/api/v1/sensor/metadata");
 }
 
+bool IsOf(const lidar::Speaker& speaker, const lidar::Params& config) {
+  const bool is_model = config.other ? speaker.other == config.other->model : speaker.is_of_vlp16_family;
+  return is_model && config.data_port == speaker.data_port;
+}
+
+// The config of this speaker, of the boat's two; nullptr: it fits neither.
+const lidar::Params* ConfigOf(const lidar::Speaker& speaker, const ConfigSeen& config) {
+  if (config.lidar && IsOf(speaker, *config.lidar)) return &*config.lidar;
+  if (config.lidar_2 && IsOf(speaker, *config.lidar_2)) return &*config.lidar_2;
+  return nullptr;
+}
+
+std::string ConfigText(const lidar::Params& config) {
+  return lidar::ConfigFileName(config.number) + " is for " + lidar::ModelWord(config.other ? std::optional(config.other->model) : std::nullopt) +
+         " on port " + std::to_string(config.data_port);
+}
+
 Finding CheckSpeaker(const lidar::Speaker& speaker, const Observations& seen) {
   const auto text = SpeakerText(speaker);
   if (!speaker.is_of_vlp16_family && !speaker.other) {
     return Warning(kSensorSubject, text + ", which are not read", "services/lidar/README.md says which sensors are read");
   }
-  const std::string lines = "lines for lidar.txtpb: " + LinesOf(speaker);
-  if (!seen.config.lidar) return Warning(kSensorSubject, text, lines);
-  const auto& config = *seen.config.lidar;
-  const bool is_model = config.other ? speaker.other == config.other->model : speaker.is_of_vlp16_family;
-  if (is_model && config.data_port == speaker.data_port) {
+  const auto& config = seen.config;
+  if (!config.lidar) return Warning(kSensorSubject, text, "lines for lidar.txtpb: " + LinesOf(speaker));
+  if (const auto* own = ConfigOf(speaker, config)) {
     if (speaker.other == lidar::OtherModel::kOuster) {
-      if (auto fault = CheckMetadata(speaker, config)) return *fault;
+      if (auto fault = CheckMetadata(speaker, *own)) return *fault;
     }
     return Ok(kSensorSubject, text);
   }
-  const std::string config_for = "lidar.txtpb is for " + lidar::ModelWord(config.other ? std::optional(config.other->model) : std::nullopt) +
-                                 " on port " + std::to_string(config.data_port);
-  // A second lidar beside the one that is used.
-  if (!seen.lidar.model.empty()) return Warning(kSensorSubject, text + "; " + config_for, "if that is the lidar to use: " + lines);
-  return Fault(kSensorSubject, text + ", but " + config_for, lines);
+  const auto config_for = ConfigText(*config.lidar) + (config.lidar_2 ? ", " + ConfigText(*config.lidar_2) : "");
+  // A lidar beside the one that is used takes no place of its.
+  const bool is_first_heard =
+      !seen.lidar.model.empty() || std::ranges::any_of(seen.lidar.speakers, [&](const auto& other) { return IsOf(other, *config.lidar); });
+  if (!is_first_heard) return Fault(kSensorSubject, text + ", but " + config_for, "lines for lidar.txtpb: " + LinesOf(speaker));
+  return Warning(kSensorSubject, text + "; " + config_for,
+                 "if it is the second lidar of the boat (services/lidar/README.md, \"Two lidars\"): lines for lidar_2.txtpb: " + LinesOf(speaker) +
+                     "; if that is the lidar to use: the same lines for lidar.txtpb");
 }
 
 bool IsBroadcast(const std::string& address) { return address.size() > 4 && address.ends_with(".255"); }
@@ -93,12 +112,15 @@ std::optional<Finding> CheckDestination(const lidar::Speaker& speaker, const Obs
     return Warning(kCableSubject, who + ", which is no address of this computer: its sockets do not hear that",
                    "the destination on the lidar's own page: this computer's address or 255.255.255.255; or source: INTERFACE in lidar.txtpb");
   }
-  if (!seen.config.lidar || seen.config.lidar->sources.kind != lidar::Sources::Kind::kUdp) return std::nullopt;
-  const auto& bind = seen.config.lidar->sources.bind_address;
+  const auto* const own = ConfigOf(speaker, seen.config);
+  const auto* const config = own != nullptr ? own : seen.config.lidar ? &*seen.config.lidar : nullptr;
+  if (config == nullptr || config->sources.kind != lidar::Sources::Kind::kUdp) return std::nullopt;
+  const auto& bind = config->sources.bind_address;
+  const auto file = lidar::ConfigFileName(config->number);
   const auto bound = io::ParseIpAddress(bind.substr(0, bind.find('%')));
   if (bound && !bound->is_any() && bound != address) {
-    return Warning(kCableSubject, who + ", but bind_address in lidar.txtpb is " + bind + ", which does not hear that",
-                   "bind_address: \"0.0.0.0\" in lidar.txtpb, or the destination on the lidar's own page");
+    return Warning(kCableSubject, who + ", but bind_address in " + file + " is " + bind + ", which does not hear that",
+                   "bind_address: \"0.0.0.0\" in " + file + ", or the destination on the lidar's own page");
   }
   return std::nullopt;
 }

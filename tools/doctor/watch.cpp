@@ -21,6 +21,7 @@
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/tracks_t.hpp"
+#include "services/lidar/sensor_beams.hpp"
 #include "services/lidar/service.hpp"
 #include "services/lidar/sources.hpp"
 #include "services/navigator/service.hpp"
@@ -51,7 +52,7 @@ constexpr int kMaxDatagramsPerPoll = 150;
 class OwnLidar {
  public:
   /// @throws std::runtime_error when a port or the interface cannot be opened
-  OwnLidar(bus::Bus& bus, const lidar::Params& params) : params_(params), service_(bus, params) {
+  OwnLidar(bus::Bus& bus, const lidar::Params& params) : params_(params), service_(bus, params), beams_(params, service_) {
     if (params.sources.kind == lidar::Sources::Kind::kInterface) {
       sources_.push_back(std::make_unique<lidar::LiveCapture>(lidar::ToLiveOptions(params)));
       return;
@@ -81,12 +82,16 @@ class OwnLidar {
       if (!source->fault().empty()) seen.fault = source->fault();
     }
     service_.AdvanceTo(now);
-    seen.complaint = service_.Report().reason;
+    beams_.Poll(now);
+    auto report = service_.Report();
+    beams_.AddTo(report);
+    seen.complaint = report.reason;
   }
 
  private:
   lidar::Params params_;
   lidar::Service service_;
+  lidar::SensorBeams beams_;
   std::vector<std::unique_ptr<io::Source>> sources_;
 };
 
@@ -185,7 +190,9 @@ class Watcher {
       }
     }
     std::vector<int> ports;
-    if (config.lidar) ports = {config.lidar->data_port, config.lidar->position_port};
+    for (const auto* lidar : {&config.lidar, &config.lidar_2}) {
+      if (*lidar) ports.insert(ports.end(), {(*lidar)->data_port, (*lidar)->position_port});
+    }
     cable_.emplace(ports);
     if (seen_.processes.contains("navigator")) {
       seen_.navigation.via = Via::kBus;

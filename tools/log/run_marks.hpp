@@ -18,13 +18,15 @@
 
 namespace lookout::log {
 
-/// LIDAR_PACKETS and NAV_RAW begin with a start mark and end with an end mark where the log holds all that their process consumed. Without a start
-/// mark the first results depend on messages before the log; without an end mark nobody knows the live run's results of the scan and the poses under
-/// way.
+/// LIDAR_PACKETS, LIDAR_PACKETS_2 and NAV_RAW begin with a start mark and end with an end mark where the log holds all that their process consumed.
+/// Without a start mark the first results depend on messages before the log; without an end mark nobody knows the live run's results of the scan and
+/// the poses under way.
 class RunMarks {
  public:
   /// Whether messages of this channel can hold marks.
-  static bool IsMarked(std::string_view channel) { return channel == bus::kLidarPackets.name || channel == bus::kNavRaw.name; }
+  static bool IsMarked(std::string_view channel) {
+    return channel == bus::kLidarPackets.name || channel == bus::kLidarPackets2.name || channel == bus::kNavRaw.name;
+  }
 
   /// A message of any channel, in the order of the log. Reads no more than the head.
   void Add(Utime time, std::string_view channel, Bytes bytes) {
@@ -89,10 +91,12 @@ class RunMarks {
     return channels;
   }
 
-  std::array<Stream, 2> streams_{
+  std::array<Stream, 3> streams_{
       {{bus::kLidarPackets.name, static_cast<std::uint64_t>(lidar_packets_t::getHash()), lidar_packets_t::MARK_START, lidar_packets_t::MARK_END,
         true},
-       {bus::kNavRaw.name, static_cast<std::uint64_t>(nav_raw_t::getHash()), nav_raw_t::KIND_START, nav_raw_t::KIND_END, false}}};
+       {bus::kNavRaw.name, static_cast<std::uint64_t>(nav_raw_t::getHash()), nav_raw_t::KIND_START, nav_raw_t::KIND_END, false},
+       {bus::kLidarPackets2.name, static_cast<std::uint64_t>(lidar_packets_t::getHash()), lidar_packets_t::MARK_START, lidar_packets_t::MARK_END,
+        true}}};
 };
 
 }  // namespace lookout::log

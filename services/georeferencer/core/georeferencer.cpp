@@ -143,7 +143,12 @@ void Georeferencer::ReleaseSecond(const ScanHead& head, bool has_timed_out, std:
     placed.head = head;
     placed.head.part_index = released.back().head.part_index + 1;
     placed.datum = released.back().datum;
-    for (const auto& segment : segments) Place(segment, has_timed_out, *second_placement_, placed);
+    for (const auto& segment : segments) {
+      Place(segment, has_timed_out, *second_placement_, placed);
+      // It is placed by the time at which it was seen; on the wire the times of a scan lie within it.
+      auto& obstacle = placed.obstacles.back();
+      obstacle.time = std::max(obstacle.time, head.time);
+    }
     counts_["obstacles_of_second"] += static_cast<std::int64_t>(segments.size());
     released.push_back(std::move(placed));
   }
@@ -154,6 +159,7 @@ std::vector<Counter> Georeferencer::counters() const {
   auto counts = counts_;
   counts["parts_waiting"] = num_waiting();
   counts["segments_of_second_dropped"] = second_.num_dropped();
+  counts["segments_of_second_untimely"] = second_.num_untimely();
   std::vector<Counter> counters;
   counts.AppendTo(counters);
   return counters;

@@ -48,6 +48,8 @@ class Georeferencer {
   std::int64_t num_waiting() const { return static_cast<std::int64_t>(waiting_.size()); }
   const PoseHistory& poses() const { return poses_; }
   std::vector<Counter> counters() const;
+  /// Segments of the second lidar that were dropped since its time does not fit that of the first.
+  std::int64_t num_untimely() const { return second_.num_untimely(); }
   /// Host time of the last release by time-out.
   std::optional<Utime> last_timeout() const { return last_timeout_; }
 
@@ -56,10 +58,10 @@ class Georeferencer {
     SegmentPart part;
     std::optional<Utime> arrival;  // host time, where there is one
   };
-  static constexpr auto kCountNames =
-      std::to_array<std::string_view>({"parts_released", "parts_timed_out", "parts_overflowed", "parts_flushed", "parts_waiting", "poses_taken",
-                                       "poses_duplicate", "pose_restarts", "obstacles_ok", "obstacles_vessel_frame_only", "obstacles_pose_timeout",
-                                       "footprints_thinned", "waterlines_thinned", "obstacles_of_second", "segments_of_second_dropped"});
+  static constexpr auto kCountNames = std::to_array<std::string_view>(
+      {"parts_released", "parts_timed_out", "parts_overflowed", "parts_flushed", "parts_waiting", "poses_taken", "poses_duplicate", "pose_restarts",
+       "obstacles_ok", "obstacles_vessel_frame_only", "obstacles_pose_timeout", "footprints_thinned", "waterlines_thinned", "obstacles_of_second",
+       "segments_of_second_dropped", "segments_of_second_untimely"});
 
   bool IsReady(const SegmentPart& part) const;
   void ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& released);

@@ -23,7 +23,7 @@ class SecondLidar {
   /// With one scan of the first: as many messages as they may need are bounded.
   static constexpr std::size_t kMaxSegments = 180;
 
-  /// The next SEGMENTS_2. Parts of one scan have one end.
+  /// The next SEGMENTS_2. Parts of one scan have one end, and come in their order.
   void Add(const SegmentPart& part);
 
   /// Whether a scan of the first must wait for more.
@@ -31,21 +31,25 @@ class SecondLidar {
   /// @param newest_pose  time of the newest POSE
   bool Holds(Utime end_time, Utime newest_pose) const;
 
-  /// @return the segments that were seen during a scan of the first, by their own times; all earlier ones are forgotten. Those seen between it and
-  /// the
-  ///         scan before have its first instant as their time
+  /// @return the segments that were seen since the scan of the first before, at most 0.3 s ahead of this one's beginning, until its end; all earlier
+  ///         ones are forgotten. Those that were seen while the first was dark lie before `time`
   std::vector<Segment> Take(Utime time, Utime end_time);
 
   std::int64_t num_dropped() const { return num_dropped_; }  // seen during no scan of the first, or too many
+  /// Of them, those that came when the scan to which they belong had gone out, or so far ahead of the first that they were forgotten: the times of
+  /// the two lidars do not fit. The first second of the second does not count.
+  std::int64_t num_untimely() const { return num_untimely_; }
   std::int64_t num_taken() const { return num_taken_; }
 
  private:
   bool IsGoingOn(Utime end_time) const;
 
-  std::deque<Segment> segments_;  // by arrival
-  std::deque<Utime> ends_;        // of scans, rising
-  std::optional<Utime> began_;    // end of the first scan since it was silent
+  std::deque<Segment> segments_;     // by arrival
+  std::deque<Utime> ends_;           // of scans, rising
+  std::optional<Utime> began_;       // end of the first scan since it was silent
+  std::optional<Utime> last_taken_;  // end of the last scan of the first
   std::int64_t num_dropped_ = 0;
+  std::int64_t num_untimely_ = 0;
   std::int64_t num_taken_ = 0;
 };
 

@@ -5,8 +5,7 @@
 
 namespace lookout::lidar {
 
-BeamFetcher::BeamFetcher(std::function<std::string()> fetch, std::chrono::milliseconds pause)
-    : fetch_(std::move(fetch)), pause_(pause), thread_([this] { Run(); }) {}
+BeamFetcher::BeamFetcher(Fetch fetch, std::chrono::milliseconds pause) : fetch_(std::move(fetch)), pause_(pause), thread_([this] { Run(); }) {}
 
 BeamFetcher::~BeamFetcher() {
   {
@@ -14,6 +13,7 @@ BeamFetcher::~BeamFetcher() {
     is_ending_ = true;
   }
   changed_.notify_all();
+  stop_.request_stop();
   thread_.join();
 }
 
@@ -50,7 +50,7 @@ void BeamFetcher::Run() {
     std::string fault;
     lock.unlock();
     try {
-      text = fetch_();
+      text = fetch_(stop_.get_token());
     } catch (const std::exception& error) {
       fault = error.what();
     }

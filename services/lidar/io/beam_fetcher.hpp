@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -14,11 +15,14 @@ namespace lookout::lidar {
 
 class BeamFetcher {
  public:
-  /// @param fetch  asks the sensor, and throws std::runtime_error; is called in a thread of its own: at once, and after each failure again
-  /// @param pause  between a failure and the next try
-  explicit BeamFetcher(std::function<std::string()> fetch, std::chrono::milliseconds pause = std::chrono::seconds(2));
+  /// Asks the sensor; gives up where a stop is asked for. @throws std::runtime_error
+  using Fetch = std::function<std::string(std::stop_token)>;
 
-  /// Waits for the request that runs.
+  /// @param fetch  is called in a thread of its own: at once, and after each failure again
+  /// @param pause  between a failure and the next try
+  explicit BeamFetcher(Fetch fetch, std::chrono::milliseconds pause = std::chrono::seconds(2));
+
+  /// Stops the request that runs.
   ~BeamFetcher();
 
   BeamFetcher(const BeamFetcher&) = delete;
@@ -37,7 +41,8 @@ class BeamFetcher {
  private:
   void Run();
 
-  std::function<std::string()> fetch_;
+  Fetch fetch_;
+  std::stop_source stop_;
   std::chrono::milliseconds pause_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <utility>
 
 namespace lookout::lidar {
@@ -27,7 +28,8 @@ std::string Where(const SensorAddress& sensor) { return sensor.host + ", port " 
 // One connection whose steps end together at the time limit.
 class Exchange {
  public:
-  Exchange(SensorAddress sensor, std::chrono::milliseconds time_limit) : sensor_(std::move(sensor)), stream_(context_) {
+  Exchange(SensorAddress sensor, std::chrono::milliseconds time_limit, std::stop_token stop)
+      : sensor_(std::move(sensor)), stop_(std::move(stop)), stream_(context_) {
     error_code error;
     const auto address = asio::ip::make_address(sensor_.host, error);
     if (error) throw std::runtime_error(Where(sensor_) + "no numeric address");
@@ -53,7 +55,12 @@ class Exchange {
       num_bytes = num;
     });
     context_.restart();
-    context_.run();
+    {
+      // Behind restart, which would take a stop back.
+      const std::stop_callback on_stop(stop_, [this] { context_.stop(); });
+      context_.run();
+    }
+    if (stop_.stop_requested()) Refuse("the request was given up");
     if (result == asio::error::eof) return std::nullopt;
     if (result == beast::error::timeout) throw std::runtime_error(Where(sensor_) + "no whole answer in time");
     if (result) throw std::runtime_error(Where(sensor_) + result.message());
@@ -70,15 +77,16 @@ class Exchange {
 
  private:
   SensorAddress sensor_;
+  std::stop_token stop_;
   asio::io_context context_;
   beast::tcp_stream stream_;
 };
 
 }  // namespace
 
-std::string RequestOusterMetadata(const SensorAddress& sensor, std::chrono::milliseconds time_limit) {
+std::string RequestOusterMetadata(const SensorAddress& sensor, std::chrono::milliseconds time_limit, const std::stop_token& stop) {
   constexpr int kHttp11 = 11;
-  Exchange exchange(sensor, time_limit);
+  Exchange exchange(sensor, time_limit, stop);
   http::request<http::empty_body> request(http::verb::get, "/api/v1/sensor/metadata", kHttp11);
   request.set(http::field::host, sensor.host);
   request.set(http::field::accept, "application/json");
@@ -113,10 +121,10 @@ std::string RequestOusterMetadata(const SensorAddress& sensor, std::chrono::mill
 }
 
 // The maker's PTC protocol: 'G', 't', command, return code, length of the body, highest byte first.
-std::string RequestHesaiAngles(const SensorAddress& sensor, std::chrono::milliseconds time_limit) {
+std::string RequestHesaiAngles(const SensorAddress& sensor, std::chrono::milliseconds time_limit, const std::stop_token& stop) {
   constexpr std::uint8_t kGetCalibration = 5;
   constexpr std::array<std::uint8_t, 8> kRequest{0x47, 0x74, kGetCalibration, 0, 0, 0, 0, 0};
-  Exchange exchange(sensor, time_limit);
+  Exchange exchange(sensor, time_limit, stop);
   exchange.DoWhole([&](const auto& handler) { asio::async_write(exchange.stream(), asio::buffer(kRequest), handler); });
   std::array<std::uint8_t, 8> head{};
   exchange.DoWhole([&](const auto& handler) { asio::async_read(exchange.stream(), asio::buffer(head), handler); });

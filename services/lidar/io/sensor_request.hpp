@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <stop_token>
 #include <string>
 
 namespace lookout::lidar {
@@ -15,14 +16,14 @@ struct SensorAddress {
 /// As a beam file may have.
 inline constexpr std::size_t kMaxBeamBytes = 64 << 10;
 
-/// The whole exchange, from the connection to the last byte, has ended by `time_limit`.
+/// The whole exchange, from the connection to the last byte, has ended by `time_limit`, or at once where a stop is asked for.
 ///
 /// @return the answer to GET /api/v1/sensor/metadata, not looked at
 /// @throws std::runtime_error with address and reason
-std::string RequestOusterMetadata(const SensorAddress& sensor, std::chrono::milliseconds time_limit);
+std::string RequestOusterMetadata(const SensorAddress& sensor, std::chrono::milliseconds time_limit, const std::stop_token& stop = {});
 
 /// @return the table of angles (CSV), not looked at
 /// @throws std::runtime_error with address and reason
-std::string RequestHesaiAngles(const SensorAddress& sensor, std::chrono::milliseconds time_limit);
+std::string RequestHesaiAngles(const SensorAddress& sensor, std::chrono::milliseconds time_limit, const std::stop_token& stop = {});
 
 }  // namespace lookout::lidar

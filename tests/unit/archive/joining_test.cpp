@@ -107,6 +107,19 @@ TEST_F(ArchiveCuts, AreNoneWhereOneProcessWentOn) {
   EXPECT_TRUE(finder_.cuts_us().empty());
 }
 
+TEST_F(ArchiveCuts, WaitForASecondLidarToo) {
+  const auto second = [this](std::int64_t time_us, Mark mark) { finder_.AddRaw(bus::kLidarPackets2.name, time_us, mark); };
+  second(9, Mark::kStart);
+  FirstRun();
+  second(22, Mark::kEnd);
+  Navigator(30, Mark::kStart);
+  Lidar(31, Mark::kStart);
+  Tracker(32, 32);
+  EXPECT_TRUE(finder_.cuts_us().empty());
+  second(33, Mark::kStart);
+  EXPECT_EQ(finder_.cuts_us(), std::vector<std::int64_t>{30});
+}
+
 TEST_F(ArchiveCuts, AreNoneWithoutAnEndMark) {
   Lidar(10, Mark::kStart);
   Navigator(11, Mark::kStart);

@@ -194,12 +194,60 @@ TEST(DoctorSpeakers, SayLiveWhereAnotherLidarSendsTo) {
   speaker.name = "Hesai XT32";
   speaker.other = lidar::OtherModel::kXt32;
   seen.lidar.speakers = {speaker};
-  EXPECT_SAYS(About(CheckSpeakers(seen), "lidar"), kWarning, "if that is the lidar to use: lines for lidar.txtpb: model: MODEL_XT32");
+  EXPECT_SAYS(About(CheckSpeakers(seen), "lidar"), kWarning, "lines for lidar_2.txtpb: model: MODEL_XT32");
+  EXPECT_SAYS(About(CheckSpeakers(seen), "lidar"), kWarning, "if that is the lidar to use: the same lines for lidar.txtpb");
   EXPECT_SAYS(About(CheckSpeakers(seen), "network"), kWarning, "which is no address of this computer");
   seen.lidar.speakers[0].destination_address = "192.168.1.77";
   EXPECT_EQ(About(CheckSpeakers(seen), "network").text, "");
   seen.lidar.num_fragments_lost = 3;
   EXPECT_SAYS(About(CheckSpeakers(seen), "network"), kWarning, "3 datagrams lost because IP fragments of them did not come");
+}
+
+TEST(DoctorSpeakers, OfASecondLidarFitItsOwnFile) {
+  auto seen = Healthy();
+  seen.config.lidar_2 = seen.config.lidar;
+  seen.config.lidar_2->number = 2;
+  seen.config.lidar_2->data_port = 2370;
+  seen.config.lidar_2->other = lidar::OtherLidar{.model = lidar::OtherModel::kXt32};
+  lidar::Speaker speaker;
+  speaker.source_address = "192.168.1.202";
+  speaker.destination_address = "192.168.1.77";
+  speaker.data_port = 2370;
+  speaker.name = "Hesai XT32";
+  speaker.other = lidar::OtherModel::kXt32;
+  seen.lidar.speakers = {speaker};
+  EXPECT_EQ(About(CheckSpeakers(seen), "lidar").text, "") << "live it is right without a word";
+  seen.lidar.speakers[0].data_port = 2380;
+  EXPECT_SAYS(About(CheckSpeakers(seen), "lidar"), kWarning, "lidar_2.txtpb is for MODEL_XT32 on port 2370");
+  // Where the first is silent too, its file may be wrong.
+  seen.lidar.model.clear();
+  EXPECT_SAYS(About(CheckSpeakers(seen), "lidar"), kFault, "lines for lidar.txtpb: model: MODEL_XT32 data_port: 2380");
+}
+
+// The sensor is asked for its beams, and no file has them: the doctor threw.
+TEST_F(DoctorCapture, ReportsWhereTheSensorIsAskedForItsBeams) {
+  MakeOuster(OusterProfile::kSingle, 32);
+  fs::copy(support::kDemoConfig, folder_ / "config", fs::copy_options::recursive);
+  std::ofstream(folder_ / "config/lidar.txtpb") << "source: UDP bind_address: \"0.0.0.0\" cut_azimuth_deg: 0 model: MODEL_OUSTER data_port: 7502 "
+                                                   "position_port: 7503 sensor_address: \"192.168.1.201\"\n";
+  const auto config = ReadConfig((folder_ / "config").string());
+  ASSERT_TRUE(config.lidar);
+  for (const auto& finding : Ask(config)) EXPECT_EQ(finding.text.find("metadata file"), std::string::npos) << finding.text;
+  const auto mounting = CheckMounting(config);
+  ASSERT_FALSE(mounting.empty());
+  for (const auto& finding : mounting) EXPECT_EQ(finding.text.find("lowest beam"), std::string::npos) << finding.text;
+}
+
+TEST(DoctorConfig, HoldsTheSecondLidar) {
+  const support::TempDir folder;
+  fs::copy(support::kDemoConfig, folder.path(), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  EXPECT_FALSE(ReadConfig(folder.string()).lidar_2);
+  std::ofstream(folder / "boat.txtpb", std::ios::app) << "lidar_2 { x_m: 0 y_m: 0 z_m: 1.5 roll_deg: 0 pitch_deg: 0 yaw_deg: 0 }\n";
+  std::ofstream(folder / "lidar_2.txtpb") << "source: UDP bind_address: \"0.0.0.0\" data_port: 2370 position_port: 8310 cut_azimuth_deg: 0\n";
+  const auto config = ReadConfig(folder.string());
+  ASSERT_TRUE(config.lidar_2);
+  EXPECT_EQ(config.lidar_2->data_port, 2370);
+  EXPECT_TRUE(config.files.at("lidar_2.txtpb").empty());
 }
 
 // Captures of real sensors, where they are.

@@ -181,5 +181,83 @@ TEST(SecondLidar, OfManySegmentsAddsSeveralPartsWithRisingNumbers) {
   }
 }
 
+// The first fires into half the circle: what the second sees while it is dark goes out with the next scan, where it was when it was seen.
+TEST(SecondLidar, IsHeardWhileTheFirstIsDark) {
+  auto georeferencer = MakeTwo();
+  constexpr double kSpeedMps = 10.0;  // of the boat, to the north
+  std::vector<ObstaclePart> all;
+  for (int number = 0; number < 30; ++number) {
+    auto first = FirstScan(number);
+    first.head.end_time = At(kScanUs * number + 50'000);
+    georeferencer.AddSegments(first);
+    georeferencer.AddSecond(MakePart(kScanUs * number, 100 + number, {MakePoint(kScanUs * number + 70'000, 20.0, 0.0, 0.0)}));
+    for (std::int64_t at_us = kScanUs * number; at_us < kScanUs * (number + 1); at_us += 20'000) {
+      auto pose = MakePose(at_us);
+      pose.position_map_m = {0.0, kSpeedMps * 1e-6 * static_cast<double>(at_us), 0.0};
+      for (auto& part : georeferencer.AddPose(pose)) all.push_back(std::move(part));
+    }
+  }
+  for (int number = 15; number < 28; ++number) {
+    const auto parts = OfScan(all, number);
+    ASSERT_EQ(parts.size(), 2U) << number;
+    ASSERT_EQ(parts[1].obstacles.size(), 1U);
+    const auto& obstacle = parts[1].obstacles[0];
+    EXPECT_EQ(obstacle.time, At(kScanUs * number)) << "on the wire within the scan";
+    const double seen_s = 1e-6 * static_cast<double>(kScanUs * (number - 1) + 70'000);
+    EXPECT_NEAR(obstacle.position_map_m.y(), kSpeedMps * seen_s - 25.0, 1e-6);
+  }
+  EXPECT_EQ(georeferencer.num_untimely(), 0);
+}
+
+// A scan of the second in two parts has come with the second of them. One whose last part is lost is covered by the next.
+TEST(SecondLidar, CountsEveryPartOfAScan) {
+  for (const bool has_last_part : {true, false}) {
+    auto georeferencer = MakeTwo();
+    std::vector<ObstaclePart> all;
+    const auto keep = [&all](std::vector<ObstaclePart> parts) {
+      for (auto& part : parts) all.push_back(std::move(part));
+    };
+    for (int number = 0; number < 30; ++number) {
+      keep(georeferencer.AddSegments(FirstScan(number)));
+      const auto begin_us = kScanUs * number + kApartUs;
+      auto part = MakePart(begin_us, 100 + number, {MakePoint(begin_us + 10'000, 20.0, 0.0, 0.0)});
+      part.head.num_parts = 2;
+      auto last_part = part;
+      last_part.head.part_index = 1;
+      last_part.segments = {MakePoint(begin_us + 60'000, 30.0, 0.0, 0.0)};
+      keep(georeferencer.AddSecond(part));
+      // POSE is ahead before the last part comes.
+      const auto end_us = kScanUs * (number + 1) + kApartUs + 40'000;
+      for (std::int64_t at_us = end_us - kScanUs; at_us < end_us; at_us += 20'000) keep(georeferencer.AddPose(MakePose(at_us / 20'000 * 20'000)));
+      if (has_last_part || number != 20) keep(georeferencer.AddSecond(last_part));
+    }
+    // Of 16 scans two each; of one the last part is lost.
+    std::size_t num_seen = 0;
+    for (int number = 12; number < 28; ++number) {
+      for (const auto& part : OfScan(all, number)) {
+        if (part.head.part_index > 0) num_seen += part.obstacles.size();
+      }
+    }
+    EXPECT_EQ(num_seen, has_last_part ? 32U : 31U);
+    EXPECT_EQ(georeferencer.num_untimely(), 0);
+  }
+}
+
+// Its clock is behind that of the first, a little or much: all that it sees is dropped, and counted as such.
+TEST(SecondLidar, WhoseTimesDoNotFitIsCounted) {
+  for (const std::int64_t behind_us : {0, 1'000'000, 5'000'000}) {
+    auto georeferencer = MakeTwo();
+    for (int number = 0; number < 100; ++number) {
+      georeferencer.AddSegments(FirstScan(number));
+      if (kScanUs * number >= behind_us) georeferencer.AddSecond(SecondScan(number - static_cast<int>(behind_us / kScanUs)));
+      for (std::int64_t at_us = kScanUs * number; at_us < kScanUs * (number + 1); at_us += 20'000) georeferencer.AddPose(MakePose(at_us));
+    }
+    EXPECT_EQ(georeferencer.num_untimely() > 20, behind_us > 0) << behind_us << " " << georeferencer.num_untimely();
+    if (behind_us == 0) {
+      EXPECT_EQ(georeferencer.num_untimely(), 0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lookout::georeferencer

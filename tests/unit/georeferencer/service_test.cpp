@@ -73,6 +73,29 @@ TEST(GeoreferencerDatum, ThatIsFarFromTheBoatIsNamedAndUsed) {
   }
 }
 
+TEST(GeoreferencerSecond, WhoseClockIsBehindIsNamed) {
+  for (const std::int64_t behind_us : {0, 1'000'000}) {
+    SCOPED_TRACE(behind_us);
+    bus::MemoryBus bus;
+    Params params{PlacementParams{}, std::chrono::milliseconds(500)};
+    params.T_vessel_lidar_2 = Eigen::Isometry3d::Identity();
+    Service service(bus, params);
+    for (std::int64_t now_us = 0; now_us < 5'000'000; now_us += 20'000) {
+      if (now_us % 100'000 == 0) {
+        bus::Publish(bus, bus::kSegments, MakeSegmentsMessage(now_us, 0, {MakeSegmentMessage(1, now_us)}));
+        const auto seen_us = now_us - behind_us;
+        bus::Publish(bus, bus::kSegments2, MakeSegmentsMessage(seen_us, 0, {MakeSegmentMessage(1, seen_us)}));
+      }
+      bus::Publish(bus, bus::kPose, MakePoseMessage(now_us, now_us / 20'000));
+      support::HandleAll(bus);
+      service.AdvanceTo(At(now_us));
+    }
+    const auto reason = service.Report().reason;
+    const bool is_named = reason.find("SEGMENTS_2 do not fit the time of SEGMENTS") != std::string::npos;
+    EXPECT_EQ(is_named, behind_us > 0) << reason;
+  }
+}
+
 TEST_F(GeoreferencerService, PlacesATurn) {
   SendTurn(0);
   EXPECT_TRUE(obstacles_.empty());

@@ -10,7 +10,9 @@
 #include <chrono>
 #include <functional>
 #include <gtest/gtest.h>
+#include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -72,13 +74,13 @@ std::string Ptc(const std::string& body, int command = 5, int code = 0) {
   return bytes + body;
 }
 
-using Request = std::string (*)(const SensorAddress&, milliseconds);
+using Request = std::string (*)(const SensorAddress&, milliseconds, const std::stop_token&);
 constexpr milliseconds kLimit(2000);
 
 std::string FaultOf(Request request, std::function<void(int)> answer, milliseconds limit = kLimit) {
   const FakeSensor sensor(std::move(answer));
   try {
-    request(sensor.address(), limit);
+    request(sensor.address(), limit, {});
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -152,7 +154,7 @@ TEST(SensorRequest, NamesWhoIsNotThere) {
 TEST(BeamFetcher, TriesAgainAndGivesTheTextOnce) {
   std::atomic<int> num_asked = 0;
   BeamFetcher fetcher(
-      [&num_asked]() -> std::string {
+      [&num_asked](const std::stop_token&) -> std::string {
         if (++num_asked <= 2) throw std::runtime_error("not there");
         return "beams";
       },
@@ -171,6 +173,25 @@ TEST(BeamFetcher, TriesAgainAndGivesTheTextOnce) {
   fetcher.AskAgain();
   for (int i = 0; i < 400 && num_asked < 4; ++i) std::this_thread::sleep_for(milliseconds(5));
   EXPECT_EQ(num_asked, 4);
+}
+
+// A sensor that takes the request and says nothing holds up the end of no process.
+TEST(BeamFetcher, GivesUpTheRequestThatRuns) {
+  for (const auto request : {Request{&RequestOusterMetadata}, Request{&RequestHesaiAngles}}) {
+    std::atomic<bool> is_asked = false;
+    std::atomic<bool> is_over = false;
+    const FakeSensor sensor([&](int) {
+      is_asked = true;
+      while (!is_over) std::this_thread::sleep_for(milliseconds(5));
+    });
+    std::optional<BeamFetcher> fetcher;
+    fetcher.emplace([&](const std::stop_token& stop) { return request(sensor.address(), std::chrono::seconds(30), stop); });
+    while (!is_asked) std::this_thread::sleep_for(milliseconds(5));
+    const auto start = std::chrono::steady_clock::now();
+    fetcher.reset();
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+    is_over = true;
+  }
 }
 
 }  // namespace

@@ -100,6 +100,24 @@ TEST(Survey, NamesWhatIsNotReadAndNothingElse) {
   EXPECT_TRUE(SpeakersOf({}, 10110).empty());
 }
 
+// It had no lines for the config after one such datagram.
+TEST(Survey, KeepsWhatItKnowsOfASenderThatSendsSomethingElseToo) {
+  const auto ouster = ouster_maker::MakePacket(ouster_maker::MakeMetadata(OusterProfile::kSingle, 32), {});
+  for (const auto& payload : {MadeHesaiPacket(HesaiModel::kXt32, 0x37).bytes, ouster}) {
+    Survey survey;
+    survey.Add(kStart, "10.0.0.1", "", 7502, payload);
+    const auto lines = ConfigLines(survey.Speakers().at(0));
+    EXPECT_NE(lines, "");
+    survey.Add(kStart, "10.0.0.1", "", 7502, std::vector<std::uint8_t>{'$', 'G', 'P'});
+    ASSERT_EQ(survey.Speakers().size(), 1U);
+    const auto speaker = survey.Speakers()[0];
+    EXPECT_EQ(ConfigLines(speaker), lines);
+    EXPECT_EQ(speaker.num_packets, 1);
+    EXPECT_EQ(speaker.size_bytes, payload.size());
+    EXPECT_EQ(speaker.layouts.empty(), speaker.other != OtherModel::kOuster);
+  }
+}
+
 TEST(Survey, KeepsABoundedNumberOfSenders) {
   Survey survey;
   const auto payload = MadeHesaiPacket(HesaiModel::kXt32, 0x37).bytes;

@@ -151,6 +151,13 @@ TEST_F(LogCommands, InfoSaysWhetherTheLogHoldsARunFromItsStartToItsEnd) {
   EXPECT_TRUE(Said("begins    without a start mark: NAV_RAW; what a replay gives first need not equal the live run\n")) << out_.str();
   EXPECT_TRUE(Said("ends      without an end mark: LIDAR_PACKETS, NAV_RAW; cut there")) << out_.str();
   EXPECT_FALSE(Said("within")) << out_.str();
+  // Of a second lidar.
+  auto second = Packets(0, 0, lidar_packets_t::MARK_START);
+  second.channel = "LIDAR_PACKETS_2";
+  out_.str("");
+  Info({Write("two", {start, second, end})}, out_);
+  EXPECT_TRUE(Said("begins    with a start mark: LIDAR_PACKETS, LIDAR_PACKETS_2\n")) << out_.str();
+  EXPECT_TRUE(Said("ends      without an end mark: LIDAR_PACKETS_2; cut there")) << out_.str();
   // A run that was cut, and a whole one behind it.
   const auto cut = Write("log", {Packets(0, 0, lidar_packets_t::MARK_START), Packets(1, 1), Packets(5, 0, lidar_packets_t::MARK_START),
                                  Packets(6, 1, lidar_packets_t::MARK_END)});

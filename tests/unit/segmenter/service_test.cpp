@@ -188,6 +188,32 @@ TEST(SegmenterParams, OfTheLookoutMethodAreTaken) {
   EXPECT_EQ(params.sure_probability, 0.6);
 }
 
+// The first lidar of config/catabot is 0.6 m above the reference point.
+TEST(SegmenterParams, OfASecondLidarAreThoseOfItsPlace) {
+  const support::TempDir folder;
+  std::filesystem::copy(support::kCatabotConfig, folder.path(), std::filesystem::copy_options::overwrite_existing);
+  EXPECT_FALSE(LoadLanes(folder).second);
+  const auto first_m = LoadLanes(folder).first.lookout.lidar_above_water_m;
+  std::ofstream(folder / "boat.txtpb", std::ios::app) << "lidar_2 { x_m: 0 y_m: 0 z_m: 2.5 roll_deg: 0 pitch_deg: 0 yaw_deg: 0 }\n";
+  const auto lanes = LoadLanes(folder);
+  ASSERT_TRUE(lanes.second);
+  EXPECT_EQ(lanes.first.lookout.lidar_above_water_m, first_m);
+  EXPECT_NEAR(lanes.second->lookout.lidar_above_water_m, first_m - 0.6 + 2.5, 1e-12);
+  EXPECT_NEAR(lanes.second->filter.T_vessel_lidar.translation().z(), 2.5, 1e-12);
+}
+
+TEST(SegmenterLanes, TellOfTheirOwnRefusals) {
+  bus::MemoryBus bus;
+  Service service(bus, Lanes{Params{}, Params{}});
+  auto wrong = test::ScanMessages(LakeInRain(), 7, 1)[0];
+  wrong.azimuth_rad[5] = 7.0F;
+  bus::Publish(bus, bus::kLidarScan2, wrong);
+  // A scan of the first that is right takes nothing back.
+  bus::Publish(bus, bus::kLidarScan, test::ScanMessages(LakeInRain(), 8, 1)[0]);
+  support::HandleAll(bus);
+  EXPECT_EQ(service.Report().reason, "the latest LIDAR_SCAN_2 was refused: refused_azimuth");
+}
+
 TEST(SegmenterParams, RefuseRelationsThatMakeNoSense) {
   const support::TempDir folder;
   std::filesystem::copy_file(support::kSources / "config" / "catabot" / "boat.txtpb", folder / "boat.txtpb",
