@@ -193,6 +193,28 @@ for elsewhere in "$work/nested/evidence/mine.txtpb" ../nested/evidence/mine.txtp
   says "is outside of the config's folder"
 done
 
+# A program that is asked to stop has not failed, and a retry takes no more units than the limit; programs that change meanwhile make no result.
+mkdir programs
+cp "$bin"/lookout-{replay,log,import,eval} programs
+cat >programs/lookout-export <<SCRIPT
+#!/bin/bash
+echo call >>"$work/calls"
+if [ "\$(cat "$work/mode")" = stop ] && [ "\$(wc -l <"$work/calls")" -gt 5 ]; then echo 'lookout-export: stopped by SIGTERM' >&2; exit 1; fi
+[ "\$(cat "$work/mode")" != change ] || echo more >>"$work/programs/lookout-log"
+exec "$bin/lookout-export" "\$@"
+SCRIPT
+chmod +x programs/lookout-export
+echo stop >mode
+expect_code 0 plan --config "$config" --programs programs --name scripts
+expect_code 1 run --name scripts --limit 2 --retries 1
+says 'not done: lookout-export was stopped by SIGTERM'
+says '1 units were not finished: again'
+says '1 done, 0 failed, 1 not done'
+echo change >mode
+expect_code 1 run --name scripts --limit 1 --retries 1
+says 'not done: its truth or the programs were changed meanwhile'
+says 'are others than those of the plan'
+
 # What a program reads it does not write over.
 cp logs/dense-102.lcmlog in.lcmlog
 cp -r logs/black_buoys-101.truth truth
