@@ -1,9 +1,12 @@
 #include "lab/eval/log_command.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -54,7 +57,7 @@ bool IsOfAScan(std::string_view channel) {
 }
 
 // What a script compares: a row per figure, "-" where it is not known. Of tracks those of the boat's own tracker.
-void WriteFigures(const std::string& file, bool is_forced, const Evaluation& evaluation, const std::vector<NamedTable>& tracks) {
+void WriteFigures(const LogOptions& options, const Evaluation& evaluation, const std::vector<NamedTable>& tracks) {
   Table table({"figure", "value"});
   table.Add({"scans", Number(evaluation.scan_iou.count)});
   table.Add({"miou", Percent(evaluation.scan_iou.value(), 3)});
@@ -83,7 +86,11 @@ void WriteFigures(const std::string& file, bool is_forced, const Evaluation& eva
       }
     }
   }
-  io::OutputFile output(file, {.force = is_forced});
+  std::vector<std::filesystem::path> inputs{options.log_file};
+  for (const auto& folder : {options.truth_folder, options.true_boat_folder}) {
+    if (!folder.empty()) std::ranges::move(io::FilesIn(folder), std::back_inserter(inputs));
+  }
+  io::OutputFile output(options.figures_file, {.force = options.is_forced, .inputs = std::move(inputs)});
   table.PrintCsv(output.stream());
   output.Commit();
 }
@@ -182,7 +189,7 @@ int EvaluateLog(const LogOptions& options) {
   if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";
   if (num_incomplete > 0) std::cout << num_incomplete << " scans lack a part of OBSTACLES\n";
   if (reader.num_damaged() > 0) std::cout << reader.num_damaged() << " stretches of the log are damaged\n";
-  if (!options.figures_file.empty()) WriteFigures(options.figures_file, options.is_forced, evaluation, track_tables);
+  if (!options.figures_file.empty()) WriteFigures(options, evaluation, track_tables);
   return EXIT_SUCCESS;
 }
 

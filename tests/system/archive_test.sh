@@ -157,6 +157,7 @@ expect_code 0 compare A B --csv compared.csv --html compared.html --fail-if 'mio
 says 'worst first'
 grep -q 'data:image/svg+xml' compared.html || fail 'no picture on the page'
 grep -qF "'it'\\''s" <(sed 's/&quot;/"/g' compared.html) || grep -q 'new line' compared.html || fail 'the odd name is not on the page'
+grep -qF "$(realpath "$bin")/lookout-replay --config $work/archive/configs/" compared.html || fail 'the commands are not those of the unit'
 [ "$(head -1 compared.csv | tr , '\n' | wc -l)" -eq 31 ] || fail 'columns of the CSV file'
 expect_code 1 compare A B --html compared.html  # it exists
 expect_code 1 compare A B --fail-if 'obstacles_lost > 0'
@@ -170,6 +171,61 @@ expect_code 0 query "SELECT 'miou', count(*) FROM truth WHERE version = 'A' AND 
 says 'miou,1'
 expect_code 2 query 'DELETE FROM run'
 expect_code 2 query 'SELECT nothing FROM tracks'
+
+# Files below the config's folder belong to it; those elsewhere are refused.
+cp -r "$config" nested
+mkdir nested/evidence
+cp "$source_folder/config/evidence/lookout.txtpb" nested/evidence/mine.txtpb
+echo 'evidence: "evidence/mine.txtpb"' >>nested/segmenter.txtpb
+expect_code 0 plan --config nested --name nested
+expect_code 0 run --name nested --limit 1 --only "run.scene = 'dense'"
+says '1 done, 0 failed, 0 not done'
+expect_code 0 plan --config nested --name nested
+says ' 1 done, 0 failed,'
+echo '# more' >>nested/evidence/mine.txtpb
+expect_code 0 plan --config nested --name nested
+says ' 0 done, 0 failed,'
+for elsewhere in "$work/nested/evidence/mine.txtpb" ../nested/evidence/mine.txtpb; do
+  rm -rf outside
+  cp -r "$config" outside
+  echo "evidence: \"$elsewhere\"" >>outside/segmenter.txtpb
+  expect_code 2 plan --config outside
+  says "is outside of the config's folder"
+done
+
+# A program that is asked to stop has not failed, and a retry takes no more units than the limit; programs that change meanwhile make no result.
+mkdir programs
+cp "$bin"/lookout-{replay,log,import,eval} programs
+cat >programs/lookout-export <<SCRIPT
+#!/bin/bash
+echo call >>"$work/calls"
+if [ "\$(cat "$work/mode")" = stop ] && [ "\$(wc -l <"$work/calls")" -gt 5 ]; then echo 'lookout-export: stopped by SIGTERM' >&2; exit 1; fi
+[ "\$(cat "$work/mode")" != change ] || echo more >>"$work/programs/lookout-log"
+exec "$bin/lookout-export" "\$@"
+SCRIPT
+chmod +x programs/lookout-export
+echo stop >mode
+expect_code 0 plan --config "$config" --programs programs --name scripts
+expect_code 1 run --name scripts --limit 2 --retries 1
+says 'not done: lookout-export was stopped by SIGTERM'
+says '1 units were not finished: again'
+says '1 done, 0 failed, 1 not done'
+echo change >mode
+expect_code 1 run --name scripts --limit 1 --retries 1
+says 'not done: its truth or the programs were changed meanwhile'
+says 'are others than those of the plan'
+
+# What a program reads it does not write over.
+cp logs/dense-102.lcmlog in.lcmlog
+cp -r logs/black_buoys-101.truth truth
+chmod -R u+w in.lcmlog truth
+before=$(sha256sum in.lcmlog truth/*)
+"$bin/lookout-replay" --config "$config" --in in.lcmlog --out out.lcmlog --hashes in.lcmlog --force >said 2>&1 && fail '--hashes wrote over its input'
+says 'is an input'
+replay logs/black_buoys-101.pcap eval.lcmlog
+"$bin/lookout-eval" --in eval.lcmlog --truth truth --figures truth/objects.csv --force >said 2>&1 && fail '--figures wrote over its truth'
+says 'is an input'
+[ "$(sha256sum in.lcmlog truth/*)" = "$before" ] || fail 'an input was changed'
 
 # A log of two runs, all of whose processes began anew: its parts give what the whole gives.
 mkdir long

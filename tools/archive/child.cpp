@@ -12,6 +12,8 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <regex>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -26,6 +28,7 @@ namespace {
 constexpr std::size_t kMostOutBytes = 1024UL * 1024;
 constexpr std::size_t kMostErrorBytes = 64UL * 1024;
 constexpr int kExitNotStarted = 127;
+constexpr std::size_t kMostStopLetters = 200;  // of a line that says which signal ended a program
 
 struct Pipe {
   int read_end = -1;
@@ -116,6 +119,17 @@ void Wait(pid_t child, ChildEnd& end) {
 
 bool ChildEnd::WasKilled() const { return signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP || signal == SIGXCPU; }
 
+std::string ChildEnd::StoppedBy() const {
+  static const std::regex kForm("(?:^|.*[: ])stopped by (SIG[A-Z0-9]+) *");
+  if (exit_code == 0) return "";
+  std::istringstream lines(error);
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() <= kMostStopLetters && std::regex_match(line, match, kForm)) return match[1];
+  }
+  return "";
+}
+
 std::string ChildEnd::LastLine() const {
   std::string_view text(error);
   while (!text.empty()) {
@@ -131,7 +145,8 @@ std::string ChildEnd::LastLine() const {
 std::string ChildEnd::FaultOfComputer() const {
   if (exit_code == kExitNotStarted) return "a program of --programs cannot be started";
   for (const auto* text : {"No space left on device", "Disk quota exceeded", "Input/output error", "Stale file handle", "Cannot allocate memory",
-                           "bad_alloc", "Too many open files", "Transport endpoint is not connected", "Read-only file system"}) {
+                           "bad_alloc", "Too many open files", "Transport endpoint is not connected", "Read-only file system", "Permission denied",
+                           "Connection timed out", "Remote I/O error", "File too large"}) {
     if (error.find(text) != std::string::npos) return text;
   }
   return "";

@@ -20,6 +20,8 @@ struct ChildEnd {
   bool IsFine() const { return exit_code == 0 && signal == 0; }
   /// Killed by somebody: a computer that shut down, or one without memory. Run again, it may end otherwise.
   bool WasKilled() const;
+  /// The signal that asked the program to stop, as it says itself in a line "...: stopped by SIGTERM" of standard error; empty: none.
+  std::string StoppedBy() const;
   /// The last line of standard error that is not empty, of printable characters.
   std::string LastLine() const;
   /// The disk, the memory or a mount failed, not the work: the text of an error that is of the computer, empty: none.

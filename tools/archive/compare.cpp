@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -24,10 +25,10 @@ namespace lookout::archive {
 namespace {
 
 VersionFacts FactsOf(Database& index, const std::string& name) {
-  auto find = index.Prepare("SELECT name, config, config_digest, program_version, programs_digest FROM version WHERE name = ?1");
+  auto find = index.Prepare("SELECT name, config, config_digest, program_version, programs_digest, programs FROM version WHERE name = ?1");
   find.Bind(1, name);
   if (!find.Step()) throw std::invalid_argument("no version " + Printable(name) + " is planned: lookout-archive plan --name " + Printable(name));
-  return {find.Text(0), find.Text(1), find.Text(2), find.Text(3), find.Text(4)};
+  return {find.Text(0), find.Text(1), find.Text(2), find.Text(3), find.Text(4), find.Text(5)};
 }
 
 // Of a file of usage/, which nothing vouches for: what is wrong is not known.
@@ -67,7 +68,8 @@ std::vector<std::string> OnlyIn(Database& index, const std::string& name, const 
 
 std::vector<ComparedUnit> UnitsOf(const ArchiveFolder& archive, Database& index, const CompareRequest& request) {
   auto rows = index.Prepare(
-      "SELECT a.run, run.scene, a.part, a.from_us, a.to_us, run.files, a.key, b.key FROM unit AS a JOIN unit AS b ON b.run = a.run AND b.part = "
+      "SELECT a.run, run.scene, a.part, a.from_us, a.to_us, run.files, a.key, b.key, run.kind FROM unit AS a JOIN unit AS b ON b.run = a.run AND "
+      "b.part = "
       "a.part "
       "AND b.from_us IS a.from_us AND b.to_us IS a.to_us LEFT JOIN run ON run.name = a.run WHERE a.version = ?1 AND b.version = ?2 "
       "ORDER BY a.run, a.part");
@@ -85,6 +87,7 @@ std::vector<ComparedUnit> UnitsOf(const ArchiveFolder& archive, Database& index,
     if (!rows.IsNull(5)) {
       for (const auto& file : nlohmann::json::parse(rows.Text(5))) unit.files.push_back(file.at(0).get<std::string>());
     }
+    unit.kind = rows.Text(8);
     unit.a = StandingOf(archive, results, rows.Text(6));
     unit.b = StandingOf(archive, results, rows.Text(7));
     if (unit.AreBothDone()) unit.comparison = CompareUnit(archive.Result(unit.a.key), archive.Result(unit.b.key));
@@ -96,6 +99,21 @@ std::vector<ComparedUnit> UnitsOf(const ArchiveFolder& archive, Database& index,
 double Truth(const std::map<std::string, double>& figures, const char* name) {
   const auto place = figures.find(name);
   return place == figures.end() ? std::numeric_limits<double>::quiet_NaN() : place->second;
+}
+
+// Figures against the truth that are compared, and what lookout-eval calls them.
+constexpr std::array<std::pair<const char*, const char*>, 8> kTruthFigures{{{"miou", "miou"},
+                                                                            {"recall", "recall"},
+                                                                            {"false_segments_per_scan", "false_segments_per_scan"},
+                                                                            {"sure_false_segments_per_scan", "sure_false_segments_per_scan"},
+                                                                            {"position_outside_95_m", "position_outside_95_m"},
+                                                                            {"mota", "tracks_identities.MOTA_%"},
+                                                                            {"idf1", "tracks_identities.IDF1_%"},
+                                                                            {"false_tracks_h", "tracks_identities.false_tracks_h"}}};
+
+// Whether one of them is known under one version and not under the other.
+bool IsTruthMissing(const std::map<std::string, double>& here, const std::map<std::string, double>& there) {
+  return std::ranges::any_of(kTruthFigures, [&](const auto& row) { return there.contains(row.second) && !here.contains(row.second); });
 }
 
 void AddPair(Figures& figures, const std::string& name, std::optional<double> a, std::optional<double> b) {
@@ -168,6 +186,7 @@ void PrintWorst(const Comparison& comparison, std::ostream& out) {
     out << fmt::format("{:8.1f}  {}{}", unit.Badness(), unit.run, unit.part > 0 ? fmt::format(" part {}", unit.part) : "");
     if (unit.comparison.tracks) out << fmt::format(", tracks -{} +{}", unit.comparison.tracks->num_lost, unit.comparison.tracks->num_gained);
     if (unit.comparison.alerts) out << fmt::format(", alerts -{} +{}", unit.comparison.alerts->num_lost, unit.comparison.alerts->num_gained);
+    if (unit.IsTruthMissingUnderB()) out << ", figures against the truth are missing under B";
     if (unit.b.state == Standing::State::kFailed) out << ", failed: " << PrintableLines(unit.b.reason);
     if (!unit.comparison.differences.empty()) out << ", first on " << unit.comparison.differences.front().channel;
     out << '\n';
@@ -176,12 +195,16 @@ void PrintWorst(const Comparison& comparison, std::ostream& out) {
 
 }  // namespace
 
+bool ComparedUnit::IsTruthMissingUnderA() const { return IsTruthMissing(comparison.truth_a, comparison.truth_b); }
+bool ComparedUnit::IsTruthMissingUnderB() const { return IsTruthMissing(comparison.truth_b, comparison.truth_a); }
+
 double ComparedUnit::Badness() const {
   constexpr double kNotDone = 1000;
   constexpr double kPerPoint = 10;
   constexpr double kPerAlert = 2;
   constexpr double kPerObstacle = 0.1;  // of a scan: 1 for a second of it
   double badness = a.state == Standing::State::kDone && b.state != Standing::State::kDone ? kNotDone : 0;
+  if (IsTruthMissingUnderB()) badness += kNotDone;
   const double drop = Truth(comparison.truth_a, "miou") - Truth(comparison.truth_b, "miou");
   if (drop > 0) badness += kPerPoint * drop;  // false where one is not known
   if (const auto& tracks = comparison.tracks) badness += static_cast<double>(tracks->num_lost + tracks->num_gained);
@@ -207,14 +230,9 @@ Figures FiguresOf(const std::vector<ComparedUnit>& units) {
   AddBalance(figures, "tracks", &UnitComparison::tracks, units);
   AddBalance(figures, "obstacles", &UnitComparison::obstacles, units);
   AddBalance(figures, "alerts", &UnitComparison::alerts, units);
-  AddTruth(figures, "miou", "miou", units);
-  AddTruth(figures, "recall", "recall", units);
-  AddTruth(figures, "false_segments_per_scan", "false_segments_per_scan", units);
-  AddTruth(figures, "sure_false_segments_per_scan", "sure_false_segments_per_scan", units);
-  AddTruth(figures, "position_outside_95_m", "position_outside_95_m", units);
-  AddTruth(figures, "mota", "tracks_identities.MOTA_%", units);
-  AddTruth(figures, "idf1", "tracks_identities.IDF1_%", units);
-  AddTruth(figures, "false_tracks_h", "tracks_identities.false_tracks_h", units);
+  AddPair(figures, "truth_missing", count([](const ComparedUnit& unit) { return unit.IsTruthMissingUnderA(); }),
+          count([](const ComparedUnit& unit) { return unit.IsTruthMissingUnderB(); }));
+  for (const auto& [name, of_eval] : kTruthFigures) AddTruth(figures, name, of_eval, units);
   constexpr double kBytesPerMb = 1e6;
   AddUsage(figures, "replay_s", &Standing::replay_s, true, 1, units);
   AddUsage(figures, "cpu_s", &Standing::cpu_s, true, 1, units);

@@ -37,6 +37,7 @@ struct Standing {
 struct ComparedUnit {
   std::string run;
   std::string scene;
+  std::string kind;  // of the recording
   std::int64_t part = 0;
   std::optional<std::int64_t> from_us;
   std::optional<std::int64_t> to_us;
@@ -46,8 +47,11 @@ struct ComparedUnit {
   UnitComparison comparison;  // where both are done
 
   bool AreBothDone() const { return a.state == Standing::State::kDone && b.state == Standing::State::kDone; }
-  /// Greater is worse. 1000 for what is not done any more; 10 for each point of mIoU lost, 2 for an alert lost or gained, 1 for a track lost or
-  /// gained.
+  /// Whether a figure against the truth is known under the other version alone.
+  bool IsTruthMissingUnderA() const;
+  bool IsTruthMissingUnderB() const;
+  /// Greater is worse. 1000 for what is not done any more, and for figures against the truth that B lacks and A has; 10 for each point of mIoU lost,
+  /// 2 for an alert lost or gained, 1 for a track lost or gained.
   double Badness() const;
 };
 
@@ -57,6 +61,7 @@ struct VersionFacts {
   std::string config_digest;
   std::string program_version;
   std::string programs_digest;
+  std::string programs;  // folder, as PathText
 };
 
 struct Comparison {

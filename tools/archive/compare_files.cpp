@@ -116,14 +116,25 @@ std::string ChannelTable(const UnitComparison& comparison) {
   return html + "</table>\n";
 }
 
-// The two logs beside each other in the page of logs.
-std::string Commands(const Comparison& comparison, const ComparedUnit& unit) {
+// A log made again as the unit made it: by the programs and the copy of the config of its version.
+std::string ReplayCommands(const ArchiveFolder& archive, const VersionFacts& version, const ComparedUnit& unit, const std::string& log) {
+  const auto programs = PathOfText(version.programs).value_or(version.programs);
+  const auto begin = [&](const char* program) {
+    return ShellWord((programs / program).native()) + " --config " +
+           ShellWord(std::filesystem::absolute(archive.Config(version.config_digest)).native());
+  };
   std::string inputs;
   for (const auto& file : unit.files) inputs += " --in " + ShellWord(PathOfText(file).value_or(file).native());
-  const auto replay = [&inputs](const VersionFacts& version, const char* log) {
-    return "lookout-replay --config " + ShellWord(PathOfText(version.config).value_or(version.config).native()) + inputs + " --out " + log + "\n";
-  };
-  auto text = replay(comparison.a, "a.lcmlog") + replay(comparison.b, "b.lcmlog") + "lookout-page --log a.lcmlog --beside b.lcmlog\n";
+  if (unit.kind != "bag") return begin("lookout-replay") + inputs + " --out " + log + ".lcmlog\n";
+  const auto imported = log + "-imported.lcmlog";
+  return begin("lookout-import") + inputs + " --out " + imported + "\n" + begin("lookout-replay") + " --in " + imported + " --out " + log +
+         ".lcmlog  # a bag of points, not packets: --from LIDAR_SCAN\n";
+}
+
+// The two logs beside each other in the page of logs.
+std::string Commands(const ArchiveFolder& archive, const Comparison& comparison, const ComparedUnit& unit) {
+  auto text = ReplayCommands(archive, comparison.a, unit, "a") + ReplayCommands(archive, comparison.b, unit, "b") +
+              "lookout-page --log a.lcmlog --beside b.lcmlog\n";
   const auto first = unit.comparison.first_lost_us         ? unit.comparison.first_lost_us
                      : unit.comparison.differences.empty() ? std::nullopt
                                                            : unit.comparison.differences.front().first_utime_us;
@@ -151,14 +162,15 @@ std::string UnitSection(const ArchiveFolder& archive, const Comparison& comparis
     if (!standing->reason.empty()) html += Html((standing == &unit.a ? "A " : "B ") + WordOf(*standing) + ": " + standing->reason + " ");
   }
   html += "</p>\n" + ChannelTable(unit.comparison) + "<div class=pair>" + Picture(archive, unit.a, "A: " + comparison.a.name) +
-          Picture(archive, unit.b, "B: " + comparison.b.name) + "</div>\n" + Commands(comparison, unit) + "</section>\n";
+          Picture(archive, unit.b, "B: " + comparison.b.name) + "</div>\n" + Commands(archive, comparison, unit) + "</section>\n";
   return html;
 }
 
 std::string FiguresTables(const Comparison& comparison) {
   const auto& figures = comparison.figures;
   std::string html = "<h2>In sum</h2>\n<table><tr><th></th><th>A</th><th>B</th><th>B − A</th></tr>\n";
-  html += FigureRow(figures, "failed", "units failed") + FigureRow(figures, "not_done", "units not done");
+  html += FigureRow(figures, "failed", "units failed") + FigureRow(figures, "not_done", "units not done") +
+          FigureRow(figures, "truth_missing", "units without a figure against the truth that the other version has");
   html += FigureRow(figures, "miou", "mIoU, %") + FigureRow(figures, "recall", "recall, %") + FigureRow(figures, "mota", "MOTA, %") +
           FigureRow(figures, "idf1", "IDF1, %") + FigureRow(figures, "false_segments_per_scan", "false segments a scan") +
           FigureRow(figures, "sure_false_segments_per_scan", "of these sure") + FigureRow(figures, "false_tracks_h", "false tracks an hour") +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -22,16 +23,52 @@ constexpr double kSameTrackM = 3;
 constexpr double kSameObstacleM = 2;
 constexpr std::int64_t kSameAlertUs = 2'000'000;
 
+// Latitude and longitude in degrees; or, where a look-out did not know the earth, east and north in metres of its map.
 struct Place {
-  double latitude_deg = 0;
-  double longitude_deg = 0;
+  double first = 0;
+  double second = 0;
+  bool is_relative = false;
 };
 
-// Metres on a sphere, of points that are near each other. For counting pairs: 0.5 % do not matter.
+// The columns of a place in a table of obstacles or tracks. A table may lack those of the map.
+class PlaceColumns {
+ public:
+  explicit PlaceColumns(const CsvReader& reader) : latitude_(reader.Place("latitude_deg")), longitude_(reader.Place("longitude_deg")) {
+    const auto& header = reader.header();
+    const auto east = std::ranges::find(header, "east_m");
+    const auto north = std::ranges::find(header, "north_m");
+    if (east == header.end() || north == header.end()) return;
+    east_ = static_cast<std::size_t>(east - header.begin());
+    north_ = static_cast<std::size_t>(north - header.begin());
+  }
+
+  // @return nullopt: it has no place at all
+  std::optional<Place> Of(const CsvReader::Row& row) const {
+    const auto latitude_deg = NumberOf(row[latitude_]);
+    const auto longitude_deg = NumberOf(row[longitude_]);
+    if (latitude_deg && longitude_deg) return Place{*latitude_deg, *longitude_deg, false};
+    if (!east_ || !north_) return std::nullopt;
+    const auto east_m = NumberOf(row[*east_]);
+    const auto north_m = NumberOf(row[*north_]);
+    if (!east_m || !north_m) return std::nullopt;
+    return Place{*east_m, *north_m, true};
+  }
+
+ private:
+  std::size_t latitude_;
+  std::size_t longitude_;
+  std::optional<std::size_t> east_;
+  std::optional<std::size_t> north_;
+};
+
+// Metres on a sphere or in the map, of points that are near each other. For counting pairs: 0.5 % do not matter. A place on the earth and one that is
+// not are never near.
 double DistanceM(const Place& a, const Place& b) {
+  if (a.is_relative != b.is_relative) return std::numeric_limits<double>::infinity();
+  if (a.is_relative) return std::hypot(a.first - b.first, a.second - b.second);
   constexpr double kMetresPerDeg = 111'320;
-  const double north_m = (a.latitude_deg - b.latitude_deg) * kMetresPerDeg;
-  const double east_m = std::remainder(a.longitude_deg - b.longitude_deg, 360.0) * kMetresPerDeg * std::cos(DegToRad(a.latitude_deg));
+  const double north_m = (a.first - b.first) * kMetresPerDeg;
+  const double east_m = std::remainder(a.second - b.second, 360.0) * kMetresPerDeg * std::cos(DegToRad(a.first));
   return std::hypot(north_m, east_m);
 }
 
@@ -105,38 +142,38 @@ struct Tracks {
   std::map<std::int64_t, std::int64_t> first_us;
 };
 
+// None where there is no file.
 Tracks ReadTracks(const fs::path& file) {
+  if (!fs::exists(file)) return {};
   CsvReader reader(file);
   const auto utime_us = reader.Place("utime_us");
   const auto id = reader.Place("track_id");
-  const auto latitude = reader.Place("latitude_deg");
-  const auto longitude = reader.Place("longitude_deg");
+  const PlaceColumns columns(reader);
   const auto status = reader.Place("status");
   Tracks tracks;
   CsvReader::Row row;
   while (reader.Next(row)) {
-    const auto latitude_deg = NumberOf(row[latitude]);
-    const auto longitude_deg = NumberOf(row[longitude]);
-    if (!latitude_deg || !longitude_deg || (row[status] != "confirmed" && row[status] != "coasting")) continue;
+    const auto place = columns.Of(row);
+    if (!place || (row[status] != "confirmed" && row[status] != "coasting")) continue;
     const auto time = Integer(row[utime_us]);
     const auto track = Integer(row[id]);
-    tracks.scans[time].push_back({track, {*latitude_deg, *longitude_deg}});
+    tracks.scans[time].push_back({track, *place});
     ++tracks.num_scans[track];
     tracks.first_us.try_emplace(track, time);
   }
   return tracks;
 }
 
-// The sure obstacles of a scan, in the order of the file. Scans come in the order of time.
+// The sure obstacles of a scan, in the order of the file. Scans come in the order of time. None where there is no file.
 class ObstacleScans {
  public:
-  explicit ObstacleScans(const fs::path& file)
-      : reader_(file),
-        utime_us_(reader_.Place("scan_utime_us")),
-        latitude_(reader_.Place("latitude_deg")),
-        longitude_(reader_.Place("longitude_deg")),
-        confidence_(reader_.Place("confidence")) {
-    has_row_ = reader_.Next(row_);
+  explicit ObstacleScans(const fs::path& file) {
+    if (!fs::exists(file)) return;
+    reader_.emplace(file);
+    columns_.emplace(*reader_);
+    utime_us_ = reader_->Place("scan_utime_us");
+    confidence_ = reader_->Place("confidence");
+    has_row_ = reader_->Next(row_);
   }
 
   // @return time of the next scan; nullopt: the end
@@ -149,20 +186,18 @@ class ObstacleScans {
     std::vector<Place> places;
     const auto time = NextTime();
     while (has_row_ && NextTime() == time) {
-      const auto latitude_deg = NumberOf(row_[latitude_]);
-      const auto longitude_deg = NumberOf(row_[longitude_]);
-      if (row_[confidence_] == "sure" && latitude_deg && longitude_deg) places.push_back({*latitude_deg, *longitude_deg});
-      has_row_ = reader_.Next(row_);
+      const auto place = columns_->Of(row_);
+      if (row_[confidence_] == "sure" && place) places.push_back(*place);
+      has_row_ = reader_->Next(row_);
     }
     return places;
   }
 
  private:
-  CsvReader reader_;
-  std::size_t utime_us_;
-  std::size_t latitude_;
-  std::size_t longitude_;
-  std::size_t confidence_;
+  std::optional<CsvReader> reader_;
+  std::optional<PlaceColumns> columns_;
+  std::size_t utime_us_ = 0;
+  std::size_t confidence_ = 0;
   CsvReader::Row row_;
   bool has_row_ = false;
 };
@@ -211,8 +246,29 @@ std::map<std::string, double> ReadTruth(const fs::path& file) {
 
 void KeepLeast(std::optional<std::int64_t>& least, std::int64_t value) { least = std::min(least.value_or(value), value); }
 
-// A table of both; of one that has nothing in it (no ALERTS) there is no file.
-bool IsInEither(const fs::path& a, const fs::path& b, const char* name) { return fs::exists(a / name) || fs::exists(b / name); }
+// Whether a table is of both. Of a channel without messages there is no file: its table is empty. A table that a version does not export is not.
+class SharedTables {
+ public:
+  SharedTables(const fs::path& a, const fs::path& b) : a_(a), b_(b), totals_a_(Totals(a)), totals_b_(Totals(b)) {}
+
+  bool Holds(const std::string& file, const std::string& channel) const {
+    const bool is_in_a = fs::exists(a_ / file);
+    const bool is_in_b = fs::exists(b_ / file);
+    return (is_in_a || is_in_b) && (is_in_a || IsWithout(totals_a_, channel)) && (is_in_b || IsWithout(totals_b_, channel));
+  }
+
+ private:
+  using ByChannel = std::map<std::string, ChannelTotal>;
+  static bool IsWithout(const ByChannel& totals, const std::string& channel) {
+    const auto place = totals.find(channel);
+    return place == totals.end() || place->second.count == 0;
+  }
+
+  const fs::path& a_;
+  const fs::path& b_;
+  ByChannel totals_a_;
+  ByChannel totals_b_;
+};
 
 }  // namespace
 
@@ -318,10 +374,10 @@ Balance CompareAlerts(const fs::path& a, const fs::path& b, std::optional<std::i
 UnitComparison CompareUnit(const fs::path& a, const fs::path& b) {
   UnitComparison comparison;
   comparison.differences = DifferingChannels(a, b);
-  const auto is_there = [&](const char* name) { return fs::exists(a / name) && fs::exists(b / name); };
-  if (is_there("tracks.csv")) comparison.tracks = CompareTracks(a / "tracks.csv", b / "tracks.csv", comparison.first_lost_us);
-  if (is_there("obstacles.csv")) comparison.obstacles = CompareObstacles(a / "obstacles.csv", b / "obstacles.csv");
-  if (IsInEither(a, b, "alerts.csv")) comparison.alerts = CompareAlerts(a / "alerts.csv", b / "alerts.csv", comparison.first_lost_us);
+  const SharedTables shared(a, b);
+  if (shared.Holds("tracks.csv", "TRACKS")) comparison.tracks = CompareTracks(a / "tracks.csv", b / "tracks.csv", comparison.first_lost_us);
+  if (shared.Holds("obstacles.csv", "OBSTACLES")) comparison.obstacles = CompareObstacles(a / "obstacles.csv", b / "obstacles.csv");
+  if (shared.Holds("alerts.csv", "ALERTS")) comparison.alerts = CompareAlerts(a / "alerts.csv", b / "alerts.csv", comparison.first_lost_us);
   comparison.truth_a = ReadTruth(a / "truth.csv");
   comparison.truth_b = ReadTruth(b / "truth.csv");
   return comparison;

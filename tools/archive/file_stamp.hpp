@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace lookout::archive {
 
@@ -29,7 +30,11 @@ std::string DigestOfFile(const std::filesystem::path& file);
 /// SHA-256 of a text.
 std::string DigestOfText(const std::string& text);
 
-/// SHA-256 over names and bytes of the regular files of a folder, in the order of the names. @throws std::runtime_error as DigestOfFile
-std::string DigestOfFolder(const std::filesystem::path& folder);
+/// The regular files below a folder of a config, relative to it and sorted; folders whose names begin with a dot are left out. Links are followed.
+/// @throws std::runtime_error when a folder cannot be read, folders are more than 8 deep, or there are more than 10 000 files or 1 GB
+std::vector<std::filesystem::path> FilesOfConfig(const std::filesystem::path& folder);
+
+/// SHA-256 over names and bytes of FilesOfConfig. @throws std::runtime_error as FilesOfConfig and DigestOfFile; io::Stopped
+std::string DigestOfConfig(const std::filesystem::path& folder);
 
 }  // namespace lookout::archive

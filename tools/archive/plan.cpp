@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/text_format.h>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <set>
@@ -14,6 +16,8 @@
 #include "common/io/file_lock.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "config/schema/lidar.pb.h"
+#include "config/schema/segmenter.pb.h"
 #include "tools/archive/child.hpp"
 #include "tools/archive/file_stamp.hpp"
 #include "tools/archive/index.hpp"
@@ -40,6 +44,37 @@ void CheckConfig(const fs::path& config, const Programs& programs) {
   throw config::ConfigError({PrintableLines(config.string()) + ": lookout-replay --check refuses it: " + PrintableLines(end.error)});
 }
 
+// Faults of a text have been told by lookout-replay --check, maybe of another version: what this one does not know is passed over.
+class NoErrors : public google::protobuf::io::ErrorCollector {
+ public:
+  void AddError(int /*line*/, int /*column*/, const std::string& /*message*/) override {}
+  void AddWarning(int /*line*/, int /*column*/, const std::string& /*message*/) override {}
+};
+
+template <typename Message>
+Message Glance(const fs::path& file) {
+  Message message;
+  if (!fs::exists(file) && !config::OldConfigFile(file)) return message;
+  google::protobuf::TextFormat::Parser parser;
+  NoErrors errors;
+  parser.RecordErrorsTo(&errors);
+  parser.AllowUnknownField(true);
+  parser.AllowPartialMessage(true);
+  parser.ParseFromString(config::ReadConfigFile(file), &message);
+  return message;
+}
+
+// A file that lies elsewhere is neither in the copy nor in the digest.
+void CheckNamedFiles(const fs::path& config) {
+  const auto check = [&config](const char* file, const char* field, const fs::path& named) {
+    if (!named.is_absolute() && std::ranges::find(named, fs::path("..")) == named.end()) return;
+    throw config::ConfigError({PrintableLines((config / file).string()) + ": " + field + ": " + Printable(named.string()) +
+                               " is outside of the config's folder: an archive keeps a copy of the folder, so put the file below it"});
+  };
+  check("segmenter.txtpb", "evidence", Glance<config::Segmenter>(config / "segmenter.txtpb").evidence());
+  for (const auto* file : {"lidar.txtpb", "lidar_2.txtpb"}) check(file, "beam_file", Glance<config::Lidar>(config / file).beam_file());
+}
+
 std::vector<Version> VersionsOf(const PlanRequest& request, const Programs& programs) {
   if (!request.names.empty() && request.names.size() != request.configs.size()) {
     throw std::invalid_argument("--name: as many as --config, or none");
@@ -49,23 +84,28 @@ std::vector<Version> VersionsOf(const PlanRequest& request, const Programs& prog
   for (std::size_t i = 0; i < request.configs.size(); ++i) {
     const auto config = fs::canonical(request.configs[i]);
     CheckConfig(config, programs);
+    CheckNamedFiles(config);
     const auto name = request.names.empty() ? PathText(config.filename()) : request.names[i];
     if (!names.insert(name).second) throw std::invalid_argument("two versions are called " + Printable(name) + ": give each a --name");
-    versions.push_back({name, config, DigestOfFolder(config)});
+    versions.push_back({name, config, DigestOfConfig(config)});
   }
   return versions;
 }
 
 // A copy that workers use: the config may change while they work.
-void KeepConfig(const ArchiveFolder& archive, const Version& version) {
+void KeepConfig(const ArchiveFolder& archive, const Version& version, const Programs& programs) {
   const auto place = archive.Config(version.config_digest);
-  if (fs::exists(place) && DigestOfFolder(place) == version.config_digest) return;
+  if (fs::exists(place) && DigestOfConfig(place) == version.config_digest) return;
   const fs::path partial = place.native() + ".partial";
   fs::remove_all(place);
   fs::remove_all(partial);
   fs::create_directories(partial);
-  for (const auto& file : io::FilesIn(version.config)) fs::copy_file(file, partial / file.filename());
-  if (DigestOfFolder(partial) != version.config_digest) throw std::runtime_error(version.config.string() + ": was changed meanwhile");
+  for (const auto& file : FilesOfConfig(version.config)) {
+    fs::create_directories((partial / file).parent_path());
+    fs::copy_file(version.config / file, partial / file);
+  }
+  if (DigestOfConfig(partial) != version.config_digest) throw std::runtime_error(version.config.string() + ": was changed meanwhile");
+  CheckConfig(partial, programs);  // it is whole: what it names is in it
   fs::rename(partial, place);
   io::SyncName(place);
 }
@@ -167,7 +207,7 @@ void MakePlan(const ArchiveFolder& archive, const PlanRequest& request, std::ost
     out << "another program changes the index: waiting\n" << std::flush;
   });
   auto index = OpenIndex(archive);
-  for (const auto& version : versions) KeepConfig(archive, version);
+  for (const auto& version : versions) KeepConfig(archive, version, programs);
   if (!programs.has_eval) out << "no lookout-eval in " << PathText(programs.folder) << ": no run is compared with its truth\n";
   Transaction transaction(index);
   for (const auto& version : versions) {

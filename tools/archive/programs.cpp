@@ -35,6 +35,24 @@ std::string DigestOfPrograms(const fs::path& folder) {
   return DigestOfText(lines);
 }
 
+std::vector<fs::path> FilesOfPrograms(const fs::path& folder) {
+  std::vector<fs::path> files;
+  files.reserve(kNeeded.size() + 1);
+  for (const auto* name : kNeeded) files.push_back(folder / name);
+  files.push_back(folder / kEval);
+  return files;
+}
+
+std::string KnownPrograms::DigestOf(const fs::path& folder) {
+  const auto files = FilesOfPrograms(folder);
+  std::vector<std::optional<FileStamp>> stamps;
+  stamps.reserve(files.size());
+  for (const auto& file : files) stamps.push_back(StampOf(file));  // before they are read: a change meanwhile shows at the next look
+  auto& known = known_[folder];
+  if (known.digest.empty() || known.stamps != stamps) known = {stamps, DigestOfPrograms(folder)};
+  return known.digest;
+}
+
 Programs ProgramsIn(const fs::path& folder) {
   Programs programs;
   programs.folder = fs::canonical(folder);

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "tools/archive/file_stamp.hpp"
 
 namespace lookout::archive {
 
@@ -22,6 +26,23 @@ Programs ProgramsIn(const std::filesystem::path& folder);
 
 /// Over the programs of a folder that are there. @throws std::runtime_error as DigestOfFile
 std::string DigestOfPrograms(const std::filesystem::path& folder);
+
+/// What DigestOfPrograms reads, there or not.
+std::vector<std::filesystem::path> FilesOfPrograms(const std::filesystem::path& folder);
+
+/// Digests of the programs of folders, which are read again only when a file of them changed.
+class KnownPrograms {
+ public:
+  /// @throws std::runtime_error as DigestOfPrograms
+  std::string DigestOf(const std::filesystem::path& folder);
+
+ private:
+  struct Known {
+    std::vector<std::optional<FileStamp>> stamps;
+    std::string digest;
+  };
+  std::map<std::filesystem::path, Known> known_;
+};
 
 /// A table that units may be asked for, and the channel that it is of.
 struct UnitTable {

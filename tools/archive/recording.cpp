@@ -99,6 +99,8 @@ Recording LookAtLog(const std::filesystem::path& file) {
       continue;
     }
     if (channel.is_raw) ++num_raw;
+    // A second lidar has marks of its own that are not looked at. Beams are sent once and again: a part would begin without them.
+    if (channel.name == bus::kLidarPackets2.name || channel.name == bus::kLidarBeams.name) found.can_be_cut = false;
     if (log::RunMarks::IsMarked(channel.name)) {
       const auto mark = MarkOf(channel.name, event->bytes);
       const auto header = bus::ReadHeader(event->bytes);
@@ -111,7 +113,7 @@ Recording LookAtLog(const std::filesystem::path& file) {
     }
   }
   found.digest = digest.Finish();
-  found.cuts_us = cuts.cuts_us();
+  if (found.can_be_cut) found.cuts_us = cuts.cuts_us();
   if (num_raw == 0 && !other_type.empty()) {
     found.state = Recording::State::kOlder;
     found.reason = other_type + " is of other wire types than this version's: lookout-replay of version " +
@@ -222,7 +224,10 @@ StreamEnds EndsOf(const nlohmann::json& json) {
 }  // namespace
 
 std::string FactsText(const Recording& recording) {
-  nlohmann::json json{{"lidar", ToJson(recording.lidar)}, {"navigator", ToJson(recording.navigator)}, {"cuts_us", recording.cuts_us}};
+  nlohmann::json json{{"lidar", ToJson(recording.lidar)},
+                      {"navigator", ToJson(recording.navigator)},
+                      {"cuts_us", recording.cuts_us},
+                      {"can_be_cut", recording.can_be_cut}};
   if (recording.start_us) json["start_us"] = *recording.start_us;
   if (recording.end_us) json["end_us"] = *recording.end_us;
   return json.dump();
@@ -234,6 +239,7 @@ void TakeFacts(const std::string& text, Recording& recording) {
     recording.lidar = EndsOf(json.at("lidar"));
     recording.navigator = EndsOf(json.at("navigator"));
     recording.cuts_us = json.at("cuts_us").get<std::vector<std::int64_t>>();
+    recording.can_be_cut = json.value("can_be_cut", false);  // not told: of an older index
     if (json.contains("start_us")) recording.start_us = json.at("start_us").get<std::int64_t>();
     if (json.contains("end_us")) recording.end_us = json.at("end_us").get<std::int64_t>();
   } catch (const nlohmann::json::exception& error) {

@@ -35,6 +35,7 @@ struct Recording {
   std::optional<std::int64_t> end_us;
   StreamEnds lidar;
   StreamEnds navigator;
+  bool can_be_cut = true;             // false: a second lidar or LIDAR_BEAMS, of which no cut is exact
   std::vector<std::int64_t> cuts_us;  // log times where all processes began anew: what replay makes of the rest does not depend on what was before
 
   bool IsUsed() const { return state == State::kSound || state == State::kDamaged; }

@@ -127,7 +127,9 @@ void CheckCondition(const ArchiveFolder& archive, const RunRequest& request) {
 
 class TodoMaker {
  public:
-  TodoMaker(const ArchiveFolder& archive, const RunRequest& request, std::ostream& out) : archive_(archive), request_(request), out_(out) {}
+  /// @param among  keys that a later round may take; nullptr: all
+  TodoMaker(const ArchiveFolder& archive, const RunRequest& request, const std::set<std::string>* among, std::ostream& out)
+      : archive_(archive), request_(request), among_(among), out_(out) {}
 
   Todo Make() {
     const io::FileLock lock(archive_.IndexLock(), io::FileLock::AtEnd::kStays, [this] {
@@ -155,7 +157,7 @@ class TodoMaker {
  private:
   void Add(const Statement& row, Results& results, std::set<std::string>& keys, Todo& todo) {
     const auto key = row.Text(0);
-    if (!keys.insert(key).second) return;
+    if (!keys.insert(key).second || (among_ != nullptr && !among_->contains(key))) return;
     const auto validity = results.Of(key);
     if (validity.is_valid && !validity.is_done) ++todo.num_failed_before;
     if (validity.is_valid && (validity.is_done || !request_.again_failed)) return;
@@ -204,6 +206,7 @@ class TodoMaker {
 
   const ArchiveFolder& archive_;
   const RunRequest& request_;
+  const std::set<std::string>* among_;
   std::ostream& out_;
   std::vector<std::string> lines_;
 };
@@ -331,17 +334,21 @@ RunSummary RunUnits(const ArchiveFolder& archive, const RunRequest& request, std
     out << "another run works on this archive: waiting\n" << std::flush;
   });
   RunSummary sum;
+  std::set<std::string> keys;  // of the first round
+  std::int64_t num_not_ready = 0;
   for (int round = 0; round <= request.num_retries; ++round) {
     auto again = request;
     again.again_failed = request.again_failed && round == 0;
-    const auto todo = TodoMaker(archive, again, out).Make();
+    const auto todo = TodoMaker(archive, again, round == 0 ? nullptr : &keys, out).Make();
+    num_not_ready += todo.num_not_ready;
     if (round == 0) {
+      for (const auto& unit : todo.units) keys.insert(unit.key);
       sum.num_units = static_cast<std::int64_t>(todo.units.size());
       out << fmt::format("{} units to do, {} failed before\n", sum.num_units, todo.num_failed_before) << std::flush;
     } else if (!todo.units.empty()) {
       out << fmt::format("{} units were not finished: again\n", todo.units.size()) << std::flush;
     }
-    sum.num_not_done = todo.num_not_ready;
+    sum.num_not_done = num_not_ready;
     if (todo.units.empty()) break;
     Watcher watcher(archive, todo, request.progress);
     if (request.engine == "local") {

@@ -64,6 +64,14 @@ bool IsBelow(const std::string& path, const std::vector<fs::path>& folders) {
   });
 }
 
+// Of what could not be looked at nothing is known: what the index says of it and of what is below it is kept.
+bool IsAtOrBelow(const std::string& path, const std::vector<fs::path>& unreadable) {
+  return std::ranges::any_of(unreadable, [&path](const fs::path& one) {
+    const auto text = PathText(one);
+    return path == text || path.starts_with(text + '/');
+  });
+}
+
 struct ScanCounts {
   std::int64_t num_read = 0;
   std::int64_t num_known = 0;
@@ -133,23 +141,19 @@ std::int64_t ForgetGone(Database& index, const Walk& walk, const std::vector<fs:
   return static_cast<std::int64_t>(std::erase_if(known, [&](const auto& entry) {
     const auto& [path, file] = entry;
     const bool is_there = file.recording.kind == "truth" ? StampOf(PathOfText(path).value_or("")).has_value() : there.contains(path);
-    if (is_there || !IsBelow(path, folders) || IsBelow(path, unreadable)) return false;
+    if (is_there || !IsBelow(path, folders) || IsAtOrBelow(path, unreadable)) return false;
     remove.Bind(1, path).Run();
     return true;
   }));
 }
 
-// What lookout-eval reads of it.
-std::string DigestOfTruth(const fs::path& folder, Database& index, std::map<std::string, KnownFile>& known) {
-  std::string lines;
-  for (const auto* name : {"objects.csv", "outlines.csv", "pose.csv", "returns.csv"}) {
-    const auto file = folder / name;
-    const auto stamp = StampOf(file);
-    if (!stamp) continue;
+std::string DigestOfKnownTruth(const fs::path& folder, Database& index, std::map<std::string, KnownFile>& known) {
+  return DigestOfTruth(folder, [&](const fs::path& file) {
+    const auto stamp = StampOf(file).value_or(FileStamp());
     const auto path = PathText(file);
     auto place = known.find(path);
-    if (place == known.end() || place->second.stamp != *stamp) {
-      KnownFile read{*stamp, {}};
+    if (place == known.end() || place->second.stamp != stamp) {
+      KnownFile read{stamp, {}};
       read.recording.kind = "truth";
       read.recording.reason = "of a truth";
       read.recording.digest = DigestOfFile(file);
@@ -157,9 +161,8 @@ std::string DigestOfTruth(const fs::path& folder, Database& index, std::map<std:
       Write(insert, path, read);
       place = known.insert_or_assign(path, std::move(read)).first;
     }
-    lines += std::string(name) + " " + place->second.recording.digest + "\n";
-  }
-  return DigestOfText(lines);
+    return place->second.recording.digest;
+  });
 }
 
 class RunWriter {
@@ -183,12 +186,13 @@ class RunWriter {
       size_bytes += stamp.size_bytes;
       end_us = std::max(end_us, recording.end_us);
     }
-    if (!std::ranges::is_sorted(cuts)) cuts.clear();
+    const bool can_be_cut = std::ranges::all_of(run, [&](std::size_t i) { return files[i].recording.can_be_cut; });
+    if (!can_be_cut || !std::ranges::is_sorted(cuts)) cuts.clear();
     insert_.Bind(1, PathText(first.path)).Bind(2, SceneOf(first.path)).Bind(3, first.recording.kind);
     if (first.recording.start_us) insert_.Bind(4, *first.recording.start_us);
     if (end_us) insert_.Bind(5, *end_us);
     insert_.Bind(6, size_bytes).Bind(7, DigestOfText(digests)).Bind(8, paths.dump()).Bind(9, nlohmann::json(cuts).dump());
-    insert_.Bind(10, PathText(truth)).Bind(11, truth.empty() ? "" : DigestOfTruth(truth, index_, known_));
+    insert_.Bind(10, PathText(truth)).Bind(11, truth.empty() ? "" : DigestOfKnownTruth(truth, index_, known_));
     insert_.Run();
   }
 

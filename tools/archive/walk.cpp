@@ -3,6 +3,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -36,7 +38,7 @@ class Walker {
   }
 
   void Enter(const fs::path& folder) {
-    const auto status = StatusOf(folder);
+    const auto status = StatusOrFault(folder);
     if (!status || !seen_.insert({status->st_dev, status->st_ino}).second) return;
     if (IsTruth(folder)) return;
     std::error_code error;
@@ -52,9 +54,16 @@ class Walker {
   }
 
  private:
-  void Take(const fs::path& path) {
+  // What is a link to nothing or in a circle, or gone meanwhile, is passed over. All else that cannot be looked at is a fault.
+  std::optional<struct stat> StatusOrFault(const fs::path& path) {
     const auto status = StatusOf(path);
-    if (!status) return;  // a link to nothing, or gone meanwhile
+    if (!status && errno != ENOENT && errno != ELOOP) walk_.faults.emplace_back(path, std::system_category().message(errno));
+    return status;
+  }
+
+  void Take(const fs::path& path) {
+    const auto status = StatusOrFault(path);
+    if (!status) return;
     if (S_ISDIR(status->st_mode)) return Enter(path);
     if (!S_ISREG(status->st_mode) || !seen_.insert({status->st_dev, status->st_ino}).second) return;
     if (const auto stamp = StampOf(path)) walk_.files.push_back({path, *stamp});
@@ -84,6 +93,18 @@ fs::path TruthOf(const fs::path& file, bool is_only_one) {
   if (IsTruth(own)) return own;
   const auto shared = file.parent_path() / "truth";
   return is_only_one && IsTruth(shared) ? shared : fs::path();
+}
+
+std::vector<fs::path> FilesOfTruth(const fs::path& folder) {
+  return {folder / "objects.csv", folder / "outlines.csv", folder / "pose.csv", folder / "returns.csv"};
+}
+
+std::string DigestOfTruth(const fs::path& folder, const std::function<std::string(const fs::path&)>& digest_of) {
+  std::string lines;
+  for (const auto& file : FilesOfTruth(folder)) {
+    if (StampOf(file)) lines += file.filename().string() + " " + digest_of(file) + "\n";
+  }
+  return DigestOfText(lines);
 }
 
 }  // namespace lookout::archive

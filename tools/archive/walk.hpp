@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/archive/file_stamp.hpp"
@@ -16,7 +18,7 @@ struct FoundFile {
 
 struct Walk {
   std::vector<FoundFile> files;                                       // by path
-  std::vector<std::pair<std::filesystem::path, std::string>> faults;  // folders that cannot be read, and why
+  std::vector<std::pair<std::filesystem::path, std::string>> faults;  // folders and files that cannot be looked at, and why
 };
 
 /// Each regular file once, also where links lead to it twice or in a circle. Folders that hold a truth (truth.lcmlog, or objects.csv with
@@ -29,5 +31,11 @@ Walk FilesBelow(const std::vector<std::filesystem::path>& folders, const std::fi
 /// The truth of a recording: a folder beside it that holds one and is called as the file with "truth" in the place of its ending
 /// (rain-11.truth for rain-11.lcmlog), or "truth" where the file is the only recording of its folder. @return empty: none
 std::filesystem::path TruthOf(const std::filesystem::path& file, bool is_only_one);
+
+/// What lookout-eval reads of a truth, there or not.
+std::vector<std::filesystem::path> FilesOfTruth(const std::filesystem::path& folder);
+
+/// Over those that are there. @param digest_of  of the bytes of one
+std::string DigestOfTruth(const std::filesystem::path& folder, const std::function<std::string(const std::filesystem::path&)>& digest_of);
 
 }  // namespace lookout::archive

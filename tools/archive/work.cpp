@@ -7,8 +7,10 @@
 #include <chrono>
 #include <exception>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 #include <sstream>
 #include <stdexcept>
@@ -28,6 +30,7 @@
 #include "tools/archive/path_text.hpp"
 #include "tools/archive/programs.hpp"
 #include "tools/archive/sidecar.hpp"
+#include "tools/archive/walk.hpp"
 
 namespace lookout::archive {
 
@@ -59,7 +62,8 @@ void WriteText(const fs::path& file, const std::string& text) {
 
 class UnitWork {
  public:
-  UnitWork(const ArchiveFolder& archive, const Unit& unit) : archive_(archive), unit_(unit), folder_(archive.Work(unit.key)) {}
+  UnitWork(const ArchiveFolder& archive, const Unit& unit, KnownPrograms& programs)
+      : archive_(archive), unit_(unit), programs_(programs), folder_(archive.Work(unit.key)) {}
 
   // @return the sidecar; the outputs lie in folder_/out
   Sidecar Do() {
@@ -77,6 +81,7 @@ class UnitWork {
       fs::create_directory(folder_ / "out");
     }
     CheckInputs();  // those that were read are those that were planned
+    if (StampsOfOthers() != others_) throw NotNow(UnitEnd::kNotBegun, "its truth or the programs were changed meanwhile: scan and plan again");
     for (const auto& file : io::FilesIn(folder_ / "out")) {
       const auto stamp = StampOf(file);
       sidecar.files[file.filename().string()] = {stamp ? stamp->size_bytes : 0, DigestOfFile(file)};
@@ -101,14 +106,37 @@ class UnitWork {
         throw NotNow(UnitEnd::kNotBegun, "its recording was changed since it was scanned: scan and plan again");
       }
     }
-    if (DigestOfFolder(archive_.Config(unit_.recipe.config_digest)) != unit_.recipe.config_digest) {
+    if (DigestOfConfig(archive_.Config(unit_.recipe.config_digest)) != unit_.recipe.config_digest) {
       throw NotNow(UnitEnd::kNotBegun, "the archive's copy of the config was changed: plan again");
+    }
+  }
+
+  using Stamps = std::vector<std::optional<FileStamp>>;
+  // Of the truth and the programs: they are as large as the work, so their bytes are read once, before it.
+  Stamps StampsOfOthers() const {
+    auto files = FilesOfPrograms(unit_.programs);
+    if (!unit_.truth.empty()) std::ranges::move(FilesOfTruth(unit_.truth), std::back_inserter(files));
+    Stamps stamps;
+    stamps.reserve(files.size());
+    for (const auto& file : files) stamps.push_back(StampOf(file));
+    return stamps;
+  }
+
+  void CheckOthers() {
+    others_ = StampsOfOthers();
+    if (programs_.DigestOf(unit_.programs) != unit_.recipe.programs_digest) {
+      throw NotNow(UnitEnd::kNotBegun, "the programs in " + PathText(unit_.programs) + " are others than those of the plan");
+    }
+    if (unit_.truth.empty()) return;
+    if (DigestOfTruth(unit_.truth, DigestOfFile) != unit_.recipe.truth_digest) {
+      throw NotNow(UnitEnd::kNotBegun, "its truth was changed since it was scanned: scan and plan again");
     }
   }
 
   // Links of short names, so that messages and results name no place of this computer.
   void Prepare() {
     CheckInputs();
+    CheckOthers();
     fs::create_directories(folder_ / "out");
     fs::create_directory_symlink(fs::absolute(archive_.Config(unit_.recipe.config_digest)), folder_ / "config");
     for (std::size_t i = 0; i < unit_.inputs.size(); ++i) {
@@ -118,6 +146,7 @@ class UnitWork {
     if (!unit_.truth.empty()) fs::create_directory_symlink(unit_.truth, folder_ / "truth");
   }
 
+  // @throws NotNow; Refused for a program that crashed
   ChildEnd Run(const std::string& program, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), (unit_.programs / program).string());
     auto end = RunChild(arguments, folder_);
@@ -126,14 +155,15 @@ class UnitWork {
     peak_bytes_ = std::max(peak_bytes_, end.peak_bytes);
     if (!end.IsFine()) last_error_ = end.error;
     if (end.WasKilled()) throw NotNow(UnitEnd::kNotFinished, program + " was killed by signal " + std::to_string(end.signal));
+    if (const auto signal = end.StoppedBy(); !signal.empty()) throw NotNow(UnitEnd::kNotFinished, program + " was stopped by " + signal);
     if (const auto fault = end.IsFine() ? "" : end.FaultOfComputer(); !fault.empty()) throw NotNow(UnitEnd::kNotFinished, program + ": " + fault);
+    if (end.signal != 0) throw Refused(program + " ended by signal " + std::to_string(end.signal));
     return end;
   }
 
   // @throws Refused for another exit code than 0 and `also_fine`
   ChildEnd MustRun(const std::string& program, std::vector<std::string> arguments, int also_fine = 0) {
     auto end = Run(program, std::move(arguments));
-    if (end.signal != 0) throw Refused(program + " ended by signal " + std::to_string(end.signal));
     if (end.exit_code != 0 && end.exit_code != also_fine) throw Refused(program + ": " + end.LastLine());
     return end;
   }
@@ -218,6 +248,8 @@ class UnitWork {
 
   const ArchiveFolder& archive_;
   const Unit& unit_;
+  KnownPrograms& programs_;
+  Stamps others_;
   fs::path folder_;
   std::vector<std::string> inputs_;
   std::map<std::string, std::int64_t> counts_;
@@ -241,14 +273,14 @@ void PutInPlace(const ArchiveFolder& archive, const Unit& unit, const Sidecar& s
 
 }  // namespace
 
-UnitOutcome WorkOn(const ArchiveFolder& archive, const Unit& unit) {
+UnitOutcome WorkOn(const ArchiveFolder& archive, const Unit& unit, KnownPrograms& programs) {
   const auto begin = std::chrono::steady_clock::now();
   fs::create_directories(archive.Work());
   const io::FileLock lock(archive.WorkLock(unit.key), io::FileLock::AtEnd::kIsRemoved);
   if (Verify(archive, unit.key).is_valid) return {UnitEnd::kAlready, ""};
   fs::remove_all(archive.Work(unit.key));  // of a worker that was killed
   try {
-    UnitWork work(archive, unit);
+    UnitWork work(archive, unit, programs);
     const auto sidecar = work.Do();
     fs::create_directories(archive.Usage(unit.key).parent_path());
     PutInPlace(archive, unit, sidecar);
@@ -270,17 +302,23 @@ UnitOutcome WorkOn(const ArchiveFolder& archive, const Unit& unit) {
 bool WorkOnBatch(const ArchiveFolder& archive, const fs::path& batch, std::ostream& out) {
   std::ifstream in(batch, std::ios::binary);
   if (!in) throw std::runtime_error(batch.string() + ": cannot be read: " + io::ErrnoText());
-  std::map<fs::path, std::string> digests;  // of the programs here, by folder
+  KnownPrograms programs;
   bool is_all = true;
   for (std::string line; std::getline(in, line);) {
     io::ThrowIfStopAsked();
-    const auto unit = UnitOfLine(line);
-    auto place = digests.find(unit.programs);
-    if (place == digests.end()) place = digests.emplace(unit.programs, DigestOfPrograms(unit.programs)).first;
-    UnitOutcome outcome{UnitEnd::kNotBegun, "the programs in " + PathText(unit.programs) + " are others than those of the plan"};
-    if (place->second == unit.recipe.programs_digest) outcome = WorkOn(archive, unit);
+    std::string run = "a unit";  // until it is known
+    UnitOutcome outcome;
+    try {
+      const auto unit = UnitOfLine(line);
+      run = unit.run;
+      outcome = WorkOn(archive, unit, programs);
+    } catch (const io::Stopped&) {
+      throw;
+    } catch (const std::exception& error) {  // of this unit alone
+      outcome = {UnitEnd::kNotFinished, error.what()};
+    }
     if (outcome.end == UnitEnd::kNotBegun || outcome.end == UnitEnd::kNotFinished) {
-      out << unit.run << ": not done: " << PrintableLines(outcome.reason) << std::endl;
+      out << run << ": not done: " << PrintableLines(outcome.reason) << std::endl;
       is_all = false;
     }
   }

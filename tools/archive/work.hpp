@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tools/archive/archive_folder.hpp"
+#include "tools/archive/programs.hpp"
 #include "tools/archive/unit.hpp"
 
 namespace lookout::archive {
@@ -14,7 +15,7 @@ enum class UnitEnd {
   kDone,
   kFailed,      // and will again: a sidecar says so
   kAlready,     // its result was there
-  kNotBegun,    // the recording or the programs are not those of the plan
+  kNotBegun,    // the recording, its truth or the programs are not those of the plan
   kNotFinished  // killed, or the computer failed: another try may succeed
 };
 
@@ -25,9 +26,9 @@ struct UnitOutcome {
 
 /// Replays, exports, evaluates, and puts the result in its place: written under a temporary name, brought to the disk, renamed, and then its sidecar.
 /// Waits while another worker has the unit. @throws io::Stopped; std::runtime_error when the folder of the archive cannot be written
-UnitOutcome WorkOn(const ArchiveFolder& archive, const Unit& unit);
+UnitOutcome WorkOn(const ArchiveFolder& archive, const Unit& unit, KnownPrograms& programs);
 
-/// The units of a file, one after the other. @return whether each is done or failed
+/// The units of a file, one after the other; what goes wrong with one does not keep the next from being done. @return whether each is done or failed
 /// @param out  a line per unit that is neither, with the reason
 bool WorkOnBatch(const ArchiveFolder& archive, const std::filesystem::path& batch, std::ostream& out);
 

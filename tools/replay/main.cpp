@@ -212,10 +212,9 @@ void Replay(const Options& options) {
   config_and_inputs.insert(config_and_inputs.end(), options.inputs.begin(), options.inputs.end());
   // Before all work.
   lookout::log::LogOutput output(
-      options.output,
-      {.force = options.force, .inputs = std::move(config_and_inputs), .tell = [](const std::string& line) { spdlog::warn("{}", line); }});
+      options.output, {.force = options.force, .inputs = config_and_inputs, .tell = [](const std::string& line) { spdlog::warn("{}", line); }});
   std::optional<lookout::replay::MessageHashes> hashes;
-  if (!options.hashes.empty()) hashes.emplace(options.hashes, options.force);
+  if (!options.hashes.empty()) hashes.emplace(options.hashes, lookout::io::OutputOptions{.force = options.force, .inputs = config_and_inputs});
   const auto start = std::chrono::steady_clock::now();
   lookout::runtime::Progress looking("replay", lookout::runtime::OnlyTerminal(stderr));
   auto inspection = lookout::replay::Inspect(options.inputs, options.request,

@@ -4,13 +4,14 @@
 #include <xxhash.h>
 
 #include <iterator>
+#include <utility>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 
 namespace lookout::replay {
 
-MessageHashes::MessageHashes(const std::filesystem::path& file, bool force) : file_(file, {.force = force}) {
+MessageHashes::MessageHashes(const std::filesystem::path& file, io::OutputOptions options) : file_(file, std::move(options)) {
   file_.Write("channel,number,utime_us,xxh3\n");
 }
 

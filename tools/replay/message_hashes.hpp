@@ -14,8 +14,8 @@ namespace lookout::replay {
 
 class MessageHashes {
  public:
-  /// @throws std::runtime_error when the file cannot be written, or exists without `force`
-  MessageHashes(const std::filesystem::path& file, bool force);
+  /// @throws std::runtime_error as io::OutputFile: the file cannot be written, exists without `force`, or is one of the inputs
+  MessageHashes(const std::filesystem::path& file, io::OutputOptions options);
 
   /// A message of any channel; raw ones and those that replay does not make are left out. The columns are channel, number (from 0 in its channel),
   /// utime_us (of the message) and xxh3 (XXH3 with 64 bits over the payload, hexadecimal).

@@ -69,6 +69,56 @@ TEST_F(ArchiveComparison, CountsSureObstaclesScanByScan) {
   EXPECT_EQ(balance.num_gained, 1);
 }
 
+TEST_F(ArchiveComparison, ComparesPlacesInTheMapWhereTheEarthIsNotKnown) {
+  const std::string header = "scan_utime_us,latitude_deg,longitude_deg,confidence,east_m,north_m\n";
+  WriteFile(dir_.path() / "a.csv", header + "1,,,sure,10,20\n1,,,sure,50,20\n2,41,2,sure,10,20\n3,,,sure,,\n");
+  WriteFile(dir_.path() / "b.csv", header + "1,,,sure,11,20\n2,,,sure,10,20\n");
+  const auto balance = archive::CompareObstacles(dir_.path() / "a.csv", dir_.path() / "b.csv");
+  EXPECT_EQ(balance.num_a, 3);
+  EXPECT_EQ(balance.num_b, 2);
+  EXPECT_EQ(balance.num_lost, 2) << "one is far, and one is of a place that B does not know on the earth";
+  EXPECT_EQ(balance.num_gained, 1);
+  const std::string tracks = "utime_us,track_id,latitude_deg,longitude_deg,status,east_m,north_m\n";
+  WriteFile(dir_.path() / "a.csv", tracks + "1,7,,,confirmed,10,20\n1,8,,,confirmed,90,20\n");
+  WriteFile(dir_.path() / "b.csv", tracks + "1,3,,,confirmed,12,20\n");
+  std::optional<std::int64_t> first_us;
+  const auto of_tracks = archive::CompareTracks(dir_.path() / "a.csv", dir_.path() / "b.csv", first_us);
+  EXPECT_EQ(of_tracks.num_a, 2);
+  EXPECT_EQ(of_tracks.num_lost, 1);
+  EXPECT_EQ(of_tracks.num_gained, 0);
+}
+
+TEST_F(ArchiveComparison, TakesATableThatOneVersionHasNothingOfForEmpty) {
+  std::filesystem::create_directories(a_);
+  std::filesystem::create_directories(b_);
+  WriteFile(a_ / "channels.csv", "channel,count,sha256\nTRACKS,2,t\nALERTS,1,x\n");
+  WriteFile(b_ / "channels.csv", "channel,count,sha256\nALERTS,1,y\n");
+  WriteFile(a_ / "messages.csv", "channel,number,utime_us,xxh3\nTRACKS,0,20,1\nALERTS,0,20,1\n");
+  WriteFile(b_ / "messages.csv", "channel,number,utime_us,xxh3\nALERTS,0,20,2\n");
+  WriteFile(a_ / "tracks.csv", "utime_us,track_id,latitude_deg,longitude_deg,status\n" + TrackRow(1, 7, 41));
+  WriteFile(a_ / "alerts.csv", "alert_id,cause,raised_utime_us\n1,guard_zone,1000000\n");
+  auto comparison = archive::CompareUnit(a_, b_);
+  ASSERT_TRUE(comparison.tracks);
+  EXPECT_EQ(comparison.tracks->num_lost, 1);
+  EXPECT_FALSE(comparison.obstacles) << "neither has it";
+  EXPECT_FALSE(comparison.alerts) << "B does not export it";
+  comparison = archive::CompareUnit(b_, a_);
+  EXPECT_EQ(comparison.tracks->num_gained, 1);
+}
+
+TEST_F(ArchiveComparison, CountsAndRanksUnitsWhoseTruthIsMissingUnderOneVersion) {
+  std::vector<archive::ComparedUnit> units(3);
+  units[0].comparison.truth_a = {{"scans", 10}, {"miou", 90}, {"recall", 80}};
+  units[0].comparison.truth_b = {{"scans", 10}, {"miou", 90}};
+  units[1].comparison.truth_a = {{"scans", 10}, {"miou", 90}};
+  const auto figures = archive::FiguresOf(units);
+  EXPECT_EQ(figures.at("truth_missing_b"), 2);
+  EXPECT_EQ(figures.at("truth_missing_a"), 0);
+  EXPECT_TRUE(archive::Holds(archive::ParseCondition("truth_missing_b > 0"), figures));
+  EXPECT_GE(units[0].Badness(), 1000);
+  EXPECT_EQ(units[2].Badness(), 0);
+}
+
 TEST_F(ArchiveComparison, PairsAlertsByCauseAndTime) {
   const std::string header = "alert_id,cause,raised_utime_us\n";
   WriteFile(dir_.path() / "a.csv", header + "1,guard_zone,1000000\n1,guard_zone,1000000\n2,closest_approach,5000000\n");
