@@ -191,7 +191,8 @@ TEST(SegmenterParams, OfTheLookoutMethodAreTaken) {
 // The first lidar of config/catabot is 0.6 m above the reference point.
 TEST(SegmenterParams, OfASecondLidarAreThoseOfItsPlace) {
   const support::TempDir folder;
-  std::filesystem::copy(support::kCatabotConfig, folder.path(), std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::copy(support::kCatabotConfig, folder.path(),
+                        std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
   EXPECT_FALSE(LoadLanes(folder).second);
   const auto first_m = LoadLanes(folder).first.lookout.lidar_above_water_m;
   std::ofstream(folder / "boat.txtpb", std::ios::app) << "lidar_2 { x_m: 0 y_m: 0 z_m: 2.5 roll_deg: 0 pitch_deg: 0 yaw_deg: 0 }\n";
