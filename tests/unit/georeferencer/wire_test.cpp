@@ -193,13 +193,29 @@ TEST(ToPose, AcceptsWhatIsHonestlyUnknown) {
   EXPECT_EQ(std::get<Pose>(result).roll_rad, 0.0);
 }
 
+TEST(ToPose, AcceptsARelativePoseWhoseMotionIsNotKnown) {
+  auto message = MakePoseMessage(0);
+  message.status = pose_t::STATUS_RELATIVE_TO_BOAT;
+  message.datum_latitude_deg = message.datum_longitude_deg = message.latitude_deg = message.longitude_deg = kNan;
+  message.datum_ellipsoid_height_m = 1.8e12;
+  for (auto& part : message.velocity_map_mps) part = kNan;
+  for (int i = 0; i < 9; ++i) {
+    for (const int unknown : {2, 3, 4, 5}) message.covariance[unknown][i] = message.covariance[i][unknown] = kNan;
+  }
+  EXPECT_EQ(RefusalOf(message), "");
+  const auto pose = std::get<Pose>(messages::ToPose(message));
+  EXPECT_TRUE(pose.is_placed && pose.datum.IsRelative() && pose.covariance.allFinite());
+  EXPECT_TRUE(pose.velocity_map_mps.hasNaN());
+}
+
 TEST(ToPose, RefusesEachFaultUnderItsOwnName) {
   using Change = std::function<void(pose_t&)>;
   const std::vector<std::pair<Refusal, Change>> changes{
       {messages::kPoseTime, [](pose_t& m) { m.utime_us = std::numeric_limits<std::int64_t>::max(); }},
       {messages::kPoseTime, [](pose_t& m) { m.utime_us += 1; }},
       {messages::kPoseStatus, [](pose_t& m) { m.status = -1; }},
-      {messages::kPoseStatus, [](pose_t& m) { m.status = 5; }},
+      {messages::kPoseStatus, [](pose_t& m) { m.status = pose_t::STATUS_RELATIVE_TO_BOAT + 1; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.status = pose_t::STATUS_RELATIVE; }},  // with a datum on the earth
       {messages::kPoseNumber, [](pose_t& m) { m.position_map_m[0] = kNan; }},
       {messages::kPoseNumber, [](pose_t& m) { m.position_map_m[1] = 1e300; }},
       {messages::kPoseNumber, [](pose_t& m) { m.position_map_m[2] = kInf; }},

@@ -331,25 +331,5 @@ TEST_F(RelativeToTheBoat, AThingThatKeepsItsPlaceBesideTheBoatIsATrack) {
   EXPECT_EQ(Told(alert_t::STATE_ACTIVE), nullptr);
 }
 
-class ANewFrame : public RelativeToTheBoat, public ::testing::WithParamInterface<std::pair<double, double>> {};
-
-// The axes of two frames differ: another thing may lie where the old one would be.
-TEST_P(ANewFrame, TakesNoAcknowledgementOver) {
-  const auto& [before, after] = GetParam();
-  const int first = AcknowledgeTheWarning(before);
-  ASSERT_GT(first, 0);
-  int num_active = 0;
-  for (int i = first; i < first + 20; ++i) {
-    SendScanOf(i, 60.0 - 0.3 * i, after);
-    num_active += Told(alert_t::STATE_ACTIVE) != nullptr ? 1 : 0;
-  }
-  EXPECT_EQ(Count("restarts_by_datum"), 1);
-  EXPECT_GT(num_active, 5) << "people are asked again";
-  EXPECT_EQ(Told(alert_t::STATE_ACKNOWLEDGED), nullptr);
-}
-
-INSTANTIATE_TEST_SUITE_P(RelativeToTheBoat, ANewFrame,
-                         ::testing::Values(std::pair(1.8e12, kNan), std::pair(kNan, 1.8e12), std::pair(1.8e12, 1.9e12)));
-
 }  // namespace
 }  // namespace lookout::tracker
