@@ -1,6 +1,8 @@
 #include "lab/fit/rows.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "common/bus/schema.hpp"
 
@@ -15,6 +17,8 @@ void Add(const std::vector<T>& values, bus::Sha256& digest) {
 }  // namespace
 
 void Rows::Add(std::span<const float> row, bool is_so, float row_weight, std::int32_t row_scan) {
+  if (row.size() != features.size())
+    throw std::logic_error("a row of " + std::to_string(row.size()) + " values for " + std::to_string(features.size()) + " features");
   values.insert(values.end(), row.begin(), row.end());
   is_true.push_back(is_so ? 1 : 0);
   weight.push_back(row_weight);

@@ -115,16 +115,17 @@ void RowMaker::AddPairs(std::size_t merge, const TrainingScan& scan, std::int32_
 
 void RowMaker::AddGroups(std::size_t sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows) {
   const auto truth = TruthOfPieces(scan.truth);
-  const auto features = method_.MeasureGroups();
+  const auto all_features = method_.MeasureGroups();
+  const auto features = [&](std::size_t group) { return std::span(all_features[group]).first(segmenter::kEvidenceLayouts.at(sum).features.size()); };
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const bool is_thing = truth[i].object != data::kNoTrueObject;
     if (sum == segmenter::kThingSum) {
-      rows.Add(features[i], is_thing, 1.0F, scan_number);
+      rows.Add(features(i), is_thing, 1.0F, scan_number);
       continue;
     }
     if (!is_thing) continue;
     const auto& object = scan.truth.objects.at(truth[i].object);
-    if (!IsDock(object)) rows.Add(features[i], eval::IsLand(object), std::sqrt(static_cast<float>(truth[i].num_returns)), scan_number);
+    if (!IsDock(object)) rows.Add(features(i), eval::IsLand(object), std::sqrt(static_cast<float>(truth[i].num_returns)), scan_number);
   }
 }
 
