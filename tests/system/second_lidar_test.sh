@@ -72,7 +72,7 @@ echo "$twins pairs of tracks within a metre"
 mkdir live
 cp -r two live/config
 cd live
-for process in recorder tracker georeferencer navigator segmenter; do
+for process in recorder tracker georeferencer navigator odometer segmenter; do
   "$bin/lookout-$process" --config config >"$process.txt" 2>&1 &
   pids+=($!)
 done
@@ -90,7 +90,7 @@ end() { kill -TERM "$1"; wait "$1" || fail "a process ended with $?"; }
 end "${lidars[0]}"
 end "${lidars[1]}"
 sleep 1
-for i in 3 4 2 1 0; do end "${pids[$i]}"; sleep 0.3; done
+for i in 4 3 5 2 1 0; do end "${pids[$i]}"; sleep 0.3; done
 pids=()
 log=$(ls logs/*.lcmlog)
 "$bin/lookout-replay" --config config --in "$log" --out replayed.log >replayed.txt 2>replayed.err || { cat replayed.err; fail "replay of the live log"; }
