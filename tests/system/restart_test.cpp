@@ -50,7 +50,7 @@ class Watch {
         pids_[message->process].insert(message->pid);
       }
     });
-    for (const auto* channel : {&bus::kLidarScan, &bus::kSegments, &bus::kPose, &bus::kObstacles, &bus::kAlerts}) {
+    for (const auto* channel : {&bus::kLidarScan, &bus::kSegments, &bus::kLidarOdometry, &bus::kPose, &bus::kObstacles, &bus::kAlerts}) {
       bus_.SubscribeRaw(*channel, [](std::string_view, Bytes) {});
     }
   }

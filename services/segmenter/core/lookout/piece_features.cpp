@@ -97,7 +97,7 @@ void PieceMeasurer::LookAlongRings(const ScanGrid& grid, const PieceTable& piece
     const double after_m = beside(grid.Wrap(column + 1));
     Surface& surface = surfaces_[static_cast<std::size_t>(piece)];
     if (!std::isinf(before_m) && !std::isinf(after_m)) {
-      surface.bend += static_cast<std::int64_t>(std::abs(before_m - 2.0 * range_m + after_m) * kBendsPerMetre + 0.5);
+      surface.bend += std::llround(std::abs(before_m - 2.0 * range_m + after_m) * kBendsPerMetre);
       ++surface.num_bends;
     }
     if (std::isinf(before_m) && std::isinf(after_m)) ++surface.num_lone;
