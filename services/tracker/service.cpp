@@ -216,8 +216,10 @@ void Service::Keep(const Datum& datum, const Eigen::Vector2d& shift_m) {
   memory_->kept_names.Keep(label_->end_time, datum, look_out.names().All(), tracks);
 }
 
-// The own position jumped, or the map has another datum: things lie from the boat as they did.
+// The own position jumped, or the map has another datum: things lie from the boat as they did. Axes of a frame that is not on the earth lie otherwise
+// than those of any other map: another thing may be where the acknowledged one would be.
 void Service::KeepBesideBoat(const ScanInput& input) {
+  if (!input.datum.IsSameAs(label_->datum) && (input.datum.IsRelative() || label_->datum.IsRelative())) return;
   const auto& own = memory_->own;
   if (!own || !input.own) return;
   Eigen::Vector2d shift_m = (input.own->position_map_m - own->position_map_m).head<2>();

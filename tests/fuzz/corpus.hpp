@@ -33,8 +33,24 @@ inline Payload operator+(Payload a, const Payload& b) {
   return a;
 }
 
+inline Payload BigEndian(std::uint64_t value, int num_bytes) {
+  Payload bytes;
+  for (int shift = 8 * (num_bytes - 1); shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+  return bytes;
+}
+
+inline Payload LittleEndian(std::uint64_t value, int num_bytes) {
+  Payload bytes = BigEndian(value, num_bytes);
+  return {bytes.rbegin(), bytes.rend()};
+}
+
 /// ROS bags, MCAP files and databases of rosbag2, and messages of ROS: into the folders of their targets below `root`.
 void WriteRecordings(const std::filesystem::path& root);
+
+/// Packets of other lidars than a VLP-16, as the targets take them; metadata and angles.
+void WriteHesaiPackets(const Folder& folder);
+void WriteVelodynePackets(const Folder& folder);
+void WriteOuster(const Folder& folder);
 
 /// Texts that lookout-archive reads.
 void WriteArchiveTexts(const Folder& folder);

@@ -331,5 +331,26 @@ TEST_F(RelativeToTheBoat, AThingThatKeepsItsPlaceBesideTheBoatIsATrack) {
   EXPECT_EQ(Told(alert_t::STATE_ACTIVE), nullptr);
 }
 
+class ANewFrame : public RelativeToTheBoat, public ::testing::WithParamInterface<std::pair<double, double>> {};
+
+// The axes of two frames differ: another thing may lie where the acknowledged one would be.
+TEST_P(ANewFrame, TakesNoAcknowledgementOver) {
+  const auto& [before, after] = GetParam();
+  const int first = AcknowledgeTheWarning(before);
+  ASSERT_GT(first, 0);
+  const auto id = Told(alert_t::STATE_ACKNOWLEDGED)->id;
+  bool is_asked_again = false;
+  for (int i = first; i < first + 80; ++i) {
+    SendScanOf(i, 60.0 - 0.3 * i, after);
+    for (const auto& alert : alerts_.back().alerts) is_asked_again = is_asked_again || (alert.id != id && alert.state == alert_t::STATE_ACTIVE);
+    for (const auto& acknowledged : alerts_.back().acknowledged) EXPECT_NE(acknowledged.source, "tracker") << i;
+  }
+  EXPECT_EQ(Count("restarts_by_datum"), 1);
+  EXPECT_TRUE(is_asked_again);
+}
+
+INSTANTIATE_TEST_SUITE_P(RelativeToTheBoat, ANewFrame,
+                         ::testing::Values(std::pair(1.8e12, kNan), std::pair(kNan, 1.8e12), std::pair(1.8e12, 1.9e12)));
+
 }  // namespace
 }  // namespace lookout::tracker
