@@ -56,6 +56,8 @@ Service::Service(bus::Bus& bus, ServiceParts parts) : bus_(bus), parts_(std::mov
   Forward<lidar_scan_t>(bus::kLidarScan);
   Forward<lidar_clock_t>(bus::kLidarClock);
   Forward<segments_t>(bus::kSegments);
+  Forward<lidar_scan_t>(bus::kLidarScan2);
+  Forward<segments_t>(bus::kSegments2);
   Forward<gnss_fix_t>(bus::kGnssFix);
   Forward<attitude_t>(bus::kAttitude);
   Forward<pose_t>(bus::kPose);

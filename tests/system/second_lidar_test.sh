@@ -46,6 +46,11 @@ done
 replay two again.log two.log >again.txt
 diff two.txt again.txt || fail "a replay of the log differs"
 
+# Its returns are exported as those of the first.
+num_returns=$("$bin/lookout-export" --in two.log --table returns --lidar 2 2>/dev/null | awk -F, 'NR > 1 && $11 > 0' | wc -l)
+echo "$num_returns labelled returns of the second lidar"
+[ "$num_returns" -gt 10000 ] || fail "lookout-export --lidar 2 writes no labelled returns"
+
 # Rows: places on the earth; the boat's own by scan. What lies behind the boat is seen by the second alone.
 table() { "$bin/lookout-export" --in "$1" --table "$2" 2>/dev/null; }
 num_second=$(table two.log obstacles | awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i } NR > 1 && $at["obstacle_id"] > 32768 && $at["status"] == "ok"' | wc -l)
@@ -72,11 +77,16 @@ echo "$twins pairs of tracks within a metre"
 mkdir live
 cp -r two live/config
 cd live
+# The log holds the run from its first mark on only where the recorder listens before the navigator begins.
 for process in recorder tracker georeferencer navigator odometer segmenter; do
   "$bin/lookout-$process" --config config >"$process.txt" 2>&1 &
   pids+=($!)
+  for _ in {1..200}; do
+    [ "$process" = recorder ] && ! compgen -G 'logs/*.lcmlog*' >/dev/null || break
+    sleep 0.1
+  done
 done
-sleep 1
+sleep 2
 lidars=()
 for process in lidar lidar_2; do
   "$bin/lookout-$process" --config config >"$process.txt" 2>&1 &

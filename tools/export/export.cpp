@@ -23,6 +23,7 @@
 #include "lookout/pose_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "tools/export/outputs.hpp"
+#include "tools/export/second_lidar.hpp"
 #include "tools/export/sinks.hpp"
 #include "tools/log/log_span.hpp"
 #include "tools/log/other_type.hpp"
@@ -167,7 +168,8 @@ std::FILE* ProgressOf(const Request& request) {
 
 int Export(const Request& request, const Output& row, std::ostream& errors) {
   constexpr std::size_t kBlockBytes = 1 << 18;
-  const auto sink = row.make(request);
+  auto sink = row.make(request);
+  if (request.lidar == 2) sink = OfSecondLidar(std::move(sink));
   std::vector<Tally> tallies;
   for (const auto& channel : sink->Channels()) tallies.push_back({.channel = channel});
   // All inputs are opened first: a mistyped name must not cost an hour of reading.

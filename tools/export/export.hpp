@@ -25,6 +25,7 @@ struct Request {
   bool all_scans = false;                                      // merges as csv, pcd, las: in place of one
   CloudFrame frame = CloudFrame::kLidar;                       // pcd and las
   std::optional<std::filesystem::path> config = std::nullopt;  // merges: the boat's folder, by which scans are segmented again
+  int lidar = 1;                                               // 2: of the second lidar's channels
   std::string from = {};                                       // csv and maps: as FindTime; empty = the start
   std::string to = {};                                         // the first time that is not in it; empty = the end
   Span span = {};                                              // csv and maps: times of measurement; of `from` and `to` where they are given

@@ -60,13 +60,16 @@ int main(int argc, char** argv) {
                      "the datum (pcd)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, exporter::CloudFrame>{
           {"lidar", exporter::CloudFrame::kLidar}, {"vessel", exporter::CloudFrame::kVessel}, {"earth", exporter::CloudFrame::kEarth}}));
+  app.add_option("--lidar", request.lidar, exporter::PlacesText(exporter::kLidarOption) + ": 2: of the second lidar (LIDAR_SCAN_2 and its like)")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
   app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line or config.");
   try {
     app.parse(argc, argv);
     const bool is_mcap = request.format == exporter::kMcapFormat;
     if (!is_mcap && request.table.empty()) throw CLI::RequiredError("--table");
-    for (const char* other : {"--table", "--scan", "--from", "--to", "--near", "--config", "--frame"}) {
+    for (const char* other : {"--table", "--scan", "--from", "--to", "--near", "--config", "--frame", "--lidar"}) {
       if (is_mcap && app.get_option(other)->count() > 0) throw CLI::ValidationError(other, "does not go with --format mcap: it is of the whole log");
     }
     request.all_scans = scan == "all";

@@ -63,15 +63,15 @@ std::unique_ptr<Sink> MakeOwnMap(const Request& /*request*/) {
 
 constexpr unsigned kPartOfLog = kSpanOption | kNearOption;
 constexpr unsigned kPartOrScan = kPartOfLog | kScanOption | kLastScanOption;
-constexpr unsigned kOfCloud = kScanOption | kAllScansOption | kSpanOption | kFrameOption;
+constexpr unsigned kOfCloud = kScanOption | kAllScansOption | kSpanOption | kFrameOption | kLidarOption;
 constexpr std::string_view kNoPlace = "no pose knows its position";
 
-constexpr std::array kRows{Output{"returns", "csv", kSpanOption, MakeCsv},
-                           Output{"returns", "ply", kScanOption, MakePly},
+constexpr std::array kRows{Output{"returns", "csv", kSpanOption | kLidarOption, MakeCsv},
+                           Output{"returns", "ply", kScanOption | kLidarOption, MakePly},
                            Output{"returns", "pcd", kOfCloud, MakePcd},
                            Output{"returns", "las", kOfCloud, MakeLas},
-                           Output{"returns", "svg", kScanOption, MakeScanPicture<ChosenScan::Of::kReturns>},
-                           Output{"segments", "csv", kSpanOption, MakeCsv},
+                           Output{"returns", "svg", kScanOption | kLidarOption, MakeScanPicture<ChosenScan::Of::kReturns>},
+                           Output{"segments", "csv", kSpanOption | kLidarOption, MakeCsv},
                            Output{"obstacles", "csv", kPartOfLog, MakeCsv},
                            Output{"obstacles", "svg", kScanOption, MakeScanPicture<ChosenScan::Of::kObstacles>},
                            Output{"tracks", "csv", kPartOfLog, MakeCsv},
@@ -79,7 +79,7 @@ constexpr std::array kRows{Output{"returns", "csv", kSpanOption, MakeCsv},
                            Output{"alerts", "csv", kSpanOption, MakeCsv},
                            Output{"pose", "csv", kPartOfLog, MakeCsv},
                            Output{.table = "pose", .format = "svg", .options = kNoOption, .make = MakeTrackPicture<false>, .when_empty = kNoPlace},
-                           Output{"clock", "csv", kSpanOption, MakeCsv},
+                           Output{"clock", "csv", kSpanOption | kLidarOption, MakeCsv},
                            Output{"fixes", "csv", kSpanOption, MakeCsv},
                            Output{"attitude", "csv", kSpanOption, MakeCsv},
                            Output{"health", "csv", kSpanOption, MakeCsv},
@@ -184,7 +184,7 @@ std::string OutputFault(const Request& request) {
         GivenOption{kLastScanOption, is_map && request.is_last_scan, "--scan last is"},
         GivenOption{kAllScansOption, request.all_scans, "--scan all is"}, GivenOption{kSpanOption, is_part, "--from and --to are"},
         GivenOption{kFrameOption, request.frame != CloudFrame::kLidar, "--frame is"}, GivenOption{kNearOption, request.near.has_value(), "--near is"},
-        GivenOption{kConfigOption, request.config.has_value(), "--config is"}}) {
+        GivenOption{kConfigOption, request.config.has_value(), "--config is"}, GivenOption{kLidarOption, request.lidar == 2, "--lidar 2 is"}}) {
     if (is_given && (row->options & option) == 0) return std::string(option_names) + " for " + PlacesText(option) + " only";
   }
   if ((row->options & kFrameOption) != 0 && !IsOfOneScan(request)) {

@@ -21,6 +21,7 @@ enum Option : unsigned {
   kAllScansOption = 16,  // --scan all
   kConfigOption = 32,    // --config, which must be given then
   kFrameOption = 64,     // --frame
+  kLidarOption = 128,    // --lidar 2
 };
 
 struct Output {

@@ -15,11 +15,19 @@ namespace {
 constexpr const char* kBoatFile = "boat.txtpb";
 constexpr const char* kTrackerFile = "tracker.txtpb";
 
+nlohmann::json MountingJson(const config::Mounting& mounting) {
+  return {{"x_m", mounting.x_m()},
+          {"y_m", mounting.y_m()},
+          {"z_m", mounting.z_m()},
+          {"roll_deg", mounting.roll_deg()},
+          {"pitch_deg", mounting.pitch_deg()},
+          {"yaw_deg", mounting.yaw_deg()}};
+}
+
 }  // namespace
 
 std::string BoatText(const config::Boat& boat, const config::Tracker& tracker) {
   const auto number_or_null = [](bool has, double number) { return has ? nlohmann::json(number) : nlohmann::json(); };
-  const auto& lidar = boat.lidar();
   const auto& own = boat.own_vessel();
   nlohmann::json zones = nlohmann::json::array();
   if (tracker.has_guard_zone()) {
@@ -30,13 +38,8 @@ std::string BoatText(const config::Boat& boat, const config::Tracker& tracker) {
                             {"hull_length_m", number_or_null(boat.has_hull_length_m(), boat.hull_length_m())},
                             {"hull_beam_m", number_or_null(boat.has_hull_beam_m(), boat.hull_beam_m())},
                             {"reference_point_above_water_m", boat.reference_point_above_water_m()},
-                            {"lidar",
-                             {{"x_m", lidar.x_m()},
-                              {"y_m", lidar.y_m()},
-                              {"z_m", lidar.z_m()},
-                              {"roll_deg", lidar.roll_deg()},
-                              {"pitch_deg", lidar.pitch_deg()},
-                              {"yaw_deg", lidar.yaw_deg()}}},
+                            {"lidar", MountingJson(boat.lidar())},
+                            {"lidar_2", boat.has_lidar_2() ? MountingJson(boat.lidar_2()) : nlohmann::json()},
                             {"own_vessel",
                              {{"min_x_m", own.min_x_m()},
                               {"max_x_m", own.max_x_m()},

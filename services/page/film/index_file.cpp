@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "lookout page index 1\n";  // version 1
+constexpr std::string_view kMagic = "lookout page index 2\n";  // version 2: parts of a second lidar's scans
 constexpr std::size_t kDigestBytes = 64;                       // hexadecimal
 constexpr std::int64_t kEndBytes = 64 * 1024;
 constexpr std::int64_t kSliceBytes = 8 * 1024 * 1024;

@@ -22,8 +22,8 @@ using std::chrono::microseconds;
 // Offsets in the wire types of the members that an index needs. Types never change: tests/golden/fingerprints.txt.
 constexpr std::size_t kMarkOffset = 24;       // of LIDAR_PACKETS marks, of NAV_RAW kind
 constexpr std::size_t kEndUtimeOffset = 32;   // of the messages of a scan
-constexpr std::size_t kScanPartOffset = 40;   // of LIDAR_SCAN; part_index and num_parts
-constexpr std::size_t kPartOffset = 44;       // of SEGMENTS, OBSTACLES and TRACKS: behind scan_flags
+constexpr std::size_t kScanPartOffset = 40;   // of LIDAR_SCAN, LIDAR_SCAN_2; part_index and num_parts
+constexpr std::size_t kPartOffset = 44;       // of SEGMENTS, SEGMENTS_2, OBSTACLES and TRACKS: behind scan_flags
 constexpr std::size_t kNumTracksOffset = 96;  // of TRACKS: num_scan_tracks
 constexpr std::size_t kHeadBytes = 104;
 
@@ -66,8 +66,8 @@ const std::vector<std::uint64_t>& FingerprintsOfChannels() {
 
 // Where part_index stands; 0: the messages of the channel have no parts.
 std::size_t PartOffset(std::string_view name) {
-  if (name == bus::kLidarScan.name) return kScanPartOffset;
-  if (name == bus::kSegments.name || name == bus::kObstacles.name || name == bus::kTracks.name) return kPartOffset;
+  if (name == bus::kLidarScan.name || name == bus::kLidarScan2.name) return kScanPartOffset;
+  if (name == bus::kSegments.name || name == bus::kSegments2.name || name == bus::kObstacles.name || name == bus::kTracks.name) return kPartOffset;
   return 0;
 }
 

@@ -13,6 +13,8 @@ using std::chrono::seconds;
 // Messages of one scan come within this time; a later message with its time is of another run.
 constexpr seconds kScanSpread(5);
 constexpr std::size_t kOpenScans = 16;
+// The second lidar's scan of a moment ended no earlier than so long before the first's.
+constexpr std::int64_t kSecondBeforeUs = 500'000;
 constexpr seconds kRecent(5);           // HEALTH and other channels without a scan
 constexpr std::size_t kMaxBack = 2000;  // messages of ALERTS that are looked through
 
@@ -24,6 +26,11 @@ bool MakesScans(ChannelIndex channel) {
 
 auto FirstAt(const std::deque<Place>& places, Utime time) { return std::ranges::lower_bound(places, time, {}, &Place::time); }
 auto FirstAfter(const std::deque<Place>& places, Utime time) { return std::ranges::upper_bound(places, time, {}, &Place::time); }
+
+// Of a second publisher.
+bool HasPart(const std::vector<Place>& places, std::uint16_t part) {
+  return std::ranges::any_of(places, [part](const Place& place) { return place.part == part; });
+}
 
 // Places of one group: parts of a scan, or what all processes say in one second.
 bool IsOneGroup(ChannelIndex channel, const Place& one, const Place& other) {
@@ -147,6 +154,7 @@ std::vector<Place> Timeline::OfChannel(ChannelIndex channel, const Moment& momen
   const Scan* const scan = moment.scan ? &scans_[*moment.scan] : nullptr;
   const auto after = FirstAfter(places, moment.time);
   if (MakesScans(channel) || Is(channel, bus::kLidarClock)) return scan == nullptr ? std::vector<Place>() : OfScan(places, *scan);
+  if (Is(channel, bus::kLidarScan2) || Is(channel, bus::kSegments2)) return scan == nullptr ? std::vector<Place>() : OfSecond(places, *scan);
   if (Is(channel, bus::kPose)) return OfPose(places, moment);
   if (Is(channel, bus::kHealth)) {
     std::vector<Place> found;
@@ -180,8 +188,20 @@ std::vector<Place> Timeline::OfScan(const Places& places, const Scan& scan) cons
   std::vector<Place> found;
   for (auto place = FirstAt(places, scan.first - kScanSpread); place != places.end() && place->time <= scan.last; ++place) {
     if (place->utime_us != scan.utime_us || scan.last - place->time > 2 * kScanSpread) continue;
-    const bool is_there = std::ranges::any_of(found, [&](const Place& other) { return other.part == place->part; });  // of a second publisher
-    if (!is_there) found.push_back(*place);
+    if (!HasPart(found, place->part)) found.push_back(*place);
+  }
+  std::ranges::sort(found, {}, &Place::part);
+  return found;
+}
+
+std::vector<Place> Timeline::OfSecond(const Places& places, const Scan& scan) const {
+  std::vector<Place> found;
+  for (auto place = FirstAt(places, scan.first - kScanSpread); place != places.end() && place->time <= scan.last + kScanSpread; ++place) {
+    const auto end_utime_us = place->utime_us + place->duration_us;
+    if (end_utime_us > scan.end_utime_us || scan.end_utime_us - end_utime_us > kSecondBeforeUs) continue;
+    if (!found.empty() && place->utime_us < found.back().utime_us) continue;
+    if (!found.empty() && place->utime_us > found.back().utime_us) found.clear();
+    if (!HasPart(found, place->part)) found.push_back(*place);
   }
   std::ranges::sort(found, {}, &Place::part);
   return found;

@@ -83,6 +83,7 @@ class Timeline {
   const Places& Of(const bus::Channel& channel) const;
   void NoteScan(const Place& place);
   std::vector<Place> OfScan(const Places& places, const Scan& scan) const;
+  std::vector<Place> OfSecond(const Places& places, const Scan& scan) const;
   std::vector<Place> OfPose(const Places& places, const Moment& moment) const;
   std::vector<Place> OfChannel(ChannelIndex channel, const Moment& moment) const;
 

@@ -1,5 +1,6 @@
 // Messages of NMEA 2000 for the own ship and for targets, as the text of two makers' gateways. Layout of the payloads: canboat's description of
-// PGN 128520, 129025 and 129026, of which the first is marked there as incomplete (no real recording of it is known).
+// PGN 128520, 129025 and 129026. The first is marked there as incomplete; a frame of a Raymarine display has the same layout, byte by byte (the
+// tests).
 #pragma once
 
 #include <array>

@@ -216,6 +216,39 @@ TEST_F(Clouds, StandInTheFrameOfTheVessel) {
   EXPECT_LT((points[1].p - boat_.T_vessel_lidar * Eigen::Vector3d(10.0, 0.0, 0.0)).norm(), 1e-4);
 }
 
+TEST_F(Clouds, OfTheSecondLidarAreOfItsScansByItsMounting) {
+  run_info_t info{};
+  info.num_files = 1;
+  info.file_name = {"boat.txtpb"};
+  info.file_text = {support::ReadFile(support::kDemoConfig / "boat.txtpb") +
+                    "\nlidar_2 { x_m: -1 y_m: 0.5 z_m: 2 roll_deg: 0 pitch_deg: 0 yaw_deg: 90 }\n"};
+  Add(bus::kRunInfo, info);
+  Add(bus::kLidarScan, MakeScan(0));
+  Add(bus::kLidarScan2, MakeScan(7, 3));
+  Add(bus::kSegments2, MakeSegments(MakeScan(7, 3), 5));
+  auto request = Of("las", CloudFrame::kVessel);
+  request.lidar = 2;
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  const auto points = PointsOf(text_);
+  ASSERT_EQ(points.size(), 6U);
+  EXPECT_EQ(points[1].label, 5);
+  EXPECT_LT((points[1].p - Eigen::Vector3d(-1.0, 10.5, 2.0)).norm(), 1e-4) << points[1].p.transpose();
+  request.table = "tracks";
+  request.format = "csv";
+  request.frame = CloudFrame::kLidar;
+  EXPECT_EQ(Export(request), kExitUsage);
+  EXPECT_NE(errors_.find("--lidar 2 is for"), std::string::npos) << errors_;
+}
+
+TEST_F(Clouds, OfASecondLidarThatTheBoatLacksHaveNoMounting) {
+  AddBoat();
+  Add(bus::kLidarScan2, MakeScan(0));
+  auto request = Of("las", CloudFrame::kVessel);
+  request.lidar = 2;
+  EXPECT_EQ(Export(request), kExitFailed);
+  EXPECT_NE(errors_.find("the log says nothing of the mounting of the lidar"), std::string::npos) << errors_;
+}
+
 TEST_F(Clouds, NeedTheMountingForTheFrameOfTheVessel) {
   AddScans(1);
   EXPECT_EQ(Export(Of("las", CloudFrame::kVessel)), kExitFailed);

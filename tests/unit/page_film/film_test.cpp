@@ -77,6 +77,28 @@ TEST_F(OfFilm, GivesEachPoseOfAScan) {
   EXPECT_EQ(UtimesOf(answer, bus::kPose), (std::vector{UtimeOf(2), UtimeOf(2) + 30'000, UtimeOf(2) + 70'000}));
 }
 
+TEST_F(OfFilm, GivesTheSecondLidarsScanThatEndedLastBeforeTheEndOfTheFirsts) {
+  const auto second = IndexOfChannel(bus::kLidarScan2);
+  {
+    SceneLog log(a_);
+    for (std::int64_t seq = 0; seq < 3; ++seq) {
+      for (int part = 0; part < 2; ++part) {
+        // It ends 40 ms before the first's, and the next 60 ms after.
+        auto scan = support::OfScan<lidar_scan_t>(UtimeOf(seq) - 40'000, seq, kScanUs - 1);
+        scan.part_index = part;
+        scan.num_parts = 2;
+        log->Put(UtimeOf(seq) + 70'000 + part * kPartUs, bus::kLidarScan2, scan);
+      }
+      log->Scan(seq);
+    }
+    for (std::int64_t seq = 3; seq < 12; ++seq) log->Scan(seq);
+  }
+  const auto film = Open({a_});
+  EXPECT_EQ(UtimesOf(film->Find(AtTime(WholeAt(1), {second})), bus::kLidarScan2), (std::vector{UtimeOf(1) - 40'000, UtimeOf(1) - 40'000}));
+  EXPECT_EQ(UtimesOf(film->Find(AtTime(WholeAt(3), {second})), bus::kLidarScan2), (std::vector{UtimeOf(2) - 40'000, UtimeOf(2) - 40'000}));
+  EXPECT_TRUE(UtimesOf(film->Find(AtTime(WholeAt(11), {second})), bus::kLidarScan2).empty()) << "too old";
+}
+
 TEST_F(OfFilm, GivesTheScanNearestToATimeOfMeasurement) {
   WriteScans(a_, 0, 10);
   const auto film = Open({a_});
@@ -310,6 +332,8 @@ TEST_F(OfFilm, KnowsTheBoatOutOfRunInfo) {
   const auto boat = nlohmann::json::parse(film->SourcesText())[0]["boat"];
   ASSERT_TRUE(boat.is_object());
   EXPECT_GT(boat["cpa_limit_m"].get<double>(), 0.0);
+  EXPECT_TRUE(boat["lidar"]["yaw_deg"].is_number());
+  EXPECT_TRUE(boat["lidar_2"].is_null());
   EXPECT_LT(boat["own_vessel"]["min_x_m"].get<double>(), boat["own_vessel"]["max_x_m"].get<double>());
   EXPECT_EQ(UtimesOf(film->Find(AtTime(kBeginUs + 10'000'000, {kRunInfoChannel})), bus::kRunInfo), std::vector{kBeginUs});
 }

@@ -54,6 +54,24 @@ TEST(PlotterN2k, SaysATarget) {
   EXPECT_EQ(Hex(message), "FF1100CA39307C170000B87AEA0037020000FC5300003EB9AB2505014C3137FC");
 }
 
+// A frame of a Raymarine display: target 1, acquired by hand, at 1.3788 rad and 53.00 m, closest approach 52.04 m in 2 s, at 19:42:54.407 UTC. It
+// differs from ours in the bit of how the target was acquired, and in the two bits of its last byte that say what kind of target it refers to.
+TEST(PlotterN2k, SaysATargetAsARaymarineDisplayDoes) {
+  auto own = MakeOwnShip();
+  own.time = Utime(std::chrono::sys_days(std::chrono::year(2026) / 7 / 1)) + std::chrono::microseconds(70'974'407'000);
+  auto target = TargetAt(own, 53.0, 1.3788);
+  target.state = TargetState::kAcquiring;
+  target.name = "TGT 01";
+  target.course_rad = 0.0;
+  target.speed_mps = 0.0;
+  target.cpa_m = 52.04;
+  target.tcpa_s = 2.0;
+  auto message = TargetMessage(own, target, 1);
+  message.payload.at(3) &= 0b1111'0111U;
+  message.payload.back() |= 0b11U;
+  EXPECT_EQ(Hex(message), "FF0100C1DC35B41400000000000054140000D0070000C6D54D2A0801544754203031FF");
+}
+
 TEST(PlotterN2k, SaysWhatIsNotKnown) {
   const auto own = OwnShipAt173321();
   auto target = TargetAt(own, 60.12, 1.2345);

@@ -5,13 +5,17 @@ const kHeadBytes = 16;
 const kLiveSource = 255;
 
 export interface GuardZone { name: string; range_m: number; from_deg: number; to_deg: number }
+/** Where a lidar sits, and how it is turned: config/schema/boat.proto. */
+export interface Mounting { x_m: number; y_m: number; z_m: number; roll_deg: number; pitch_deg: number; yaw_deg: number }
 /** Facts of a boat out of its config; frames: vessel (x forward, y port, z up). */
 export interface BoatFacts {
   name: string;
   hull_length_m: number | null;
   hull_beam_m: number | null;
   reference_point_above_water_m: number;
-  lidar: { x_m: number; y_m: number; z_m: number; roll_deg: number; pitch_deg: number; yaw_deg: number };
+  lidar: Mounting;
+  /** null: the boat has one lidar. */
+  lidar_2?: Mounting | null;
   own_vessel: { min_x_m: number; max_x_m: number; min_y_m: number; max_y_m: number };
   guard_zones: GuardZone[];
   cpa_limit_m: number | null;

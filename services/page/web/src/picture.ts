@@ -1,21 +1,26 @@
 // What views show: messages of one moment, joined and brought into frames that can be drawn. Nothing here knows the DOM.
 import * as wire from "./messages/generated.js";
-import type { BoatFacts, Frame } from "./link.js";
+import type { BoatFacts, Frame, Mounting } from "./link.js";
 import { Refused } from "./messages/reader.js";
 
 /** Channels that a picture is made of. */
-export const kPictureChannels = ["LIDAR_SCAN", "SEGMENTS", "OBSTACLES", "TRACKS", "ALERTS", "POSE", "LIDAR_CLOCK", "GNSS_FIX", "HEALTH", "RUN_INFO"];
+export const kPictureChannels = ["LIDAR_SCAN", "LIDAR_SCAN_2", "SEGMENTS", "SEGMENTS_2", "OBSTACLES", "TRACKS", "ALERTS", "POSE", "LIDAR_CLOCK", "GNSS_FIX", "HEALTH", "RUN_INFO"];
 
-/** Returns of a scan that measured something, as arrays with one number (or three) per return. */
+/** Added to the labels of a second lidar that are segments: its SEGMENTS_2 have numbers of their own. */
+export const kSecondLidar = 0x10000;
+
+/** Returns of a scan that measured something, as arrays with one number (or three) per return; behind those of the first lidar the second's. */
 export interface Returns {
   count: number;
+  /** Of the first lidar. */
+  first_count: number;
   /** x, y, z in the frame `level`: x forward along the heading at the end of the scan, y port, z up from the water; each placed by the attitude at its time. */
   level_m: Float32Array;
   range_m: Float32Array;
   reflectivity: Uint8Array;
-  /** As in SEGMENTS: above 0 the segment, below 0 minus the reason, 0 where SEGMENTS did not come. */
-  label: Int16Array;
-  /** Place in the range image. */
+  /** As in SEGMENTS: above 0 the segment, below 0 minus the reason, 0 where SEGMENTS did not come. A segment of the second lidar has kSecondLidar more. */
+  label: Int32Array;
+  /** Place in the range image of its lidar. */
   column: Uint16Array;
   ring: Uint8Array;
   return_index: Uint8Array;
@@ -80,12 +85,20 @@ class Parts<T extends Parted> {
 
 const kPosesKept = 64;
 const kNoParts: wire.Segments[] = [];
+const kSecondScansKept = 8;
+/** The scan of the second lidar that is shown ended so long before that of the first, or later. */
+const kSecondBefore_us = 500_000;
+
+/** What one lidar saw in one scan. */
+export interface Looked { scan: wire.LidarScan[]; labels: wire.Segments[] }
+function isSame(a: Looked | null, b: Looked | null): boolean { return a?.scan === b?.scan && a?.labels === b?.labels; }
 
 /** Takes messages in any order, and makes a picture of what is newest. */
 export class Assembler {
   private readonly scan = new Parts<wire.LidarScan>();
   private readonly scans: wire.LidarScan[][] = [];  // whole, the newest last: TRACKS come later than the scan
   private readonly segments = new Parts<wire.Segments>();
+  private readonly second = { scan: new Parts<wire.LidarScan>(), segments: new Parts<wire.Segments>(), scans: [] as Looked[], labels: [] as wire.Segments[][] };
   private readonly obstacles = new Parts<wire.Obstacles>();
   private readonly tracks = new Parts<wire.Tracks>();
   private waterline = new Float32Array();
@@ -99,7 +112,7 @@ export class Assembler {
   /** Messages that could not be read, by channel. */
   readonly refused = new Map<string, number>();
   boat: BoatFacts | null = null;
-  private kept: { scan: wire.LidarScan[]; labels: wire.Segments[]; pose: wire.Pose | null; boat: BoatFacts | null; returns: Returns } | null = null;
+  private kept: { first: Looked; second: Looked | null; pose: wire.Pose | null; boat: BoatFacts | null; returns: Returns } | null = null;
 
   /** @returns whether there is something new to draw: a scan, tracks, alerts or obstacles that are whole */
   take(frame: Frame): boolean {
@@ -121,7 +134,17 @@ export class Assembler {
         this.scans.push(this.scan.whole);
         if (this.scans.length > 3) this.scans.shift();
         return true;
+      case "LIDAR_SCAN_2": {
+        const { second } = this;
+        if (second.scan.take(wire.LidarScan.decode(bytes))) second.scans = [...second.scans, { scan: second.scan.whole, labels: kNoParts }].slice(-kSecondScansKept);
+        return false;
+      }
       case "SEGMENTS": return this.segments.take(wire.Segments.decode(bytes));
+      case "SEGMENTS_2": {
+        const { second } = this;
+        if (second.segments.take(wire.Segments.decode(bytes))) second.labels = [...second.labels, second.segments.whole].slice(-kSecondScansKept);
+        return false;
+      }
       case "OBSTACLES": return this.obstacles.take(wire.Obstacles.decode(bytes));
       case "TRACKS": {
         if (!this.tracks.take(wire.Tracks.decode(bytes))) return false;
@@ -148,12 +171,19 @@ export class Assembler {
   }
 
   // Tracks, obstacles and alerts of a scan come one after the other: its returns stay the same array.
-  private returnsOf(scan: wire.LidarScan[], labels: wire.Segments[], pose: wire.Pose | null, turn_radps: number): Returns {
+  private returnsOf(first: Looked, second: Looked | null, pose: wire.Pose | null, turn_radps: number): Returns {
     const { kept } = this;
-    if (kept !== null && kept.scan === scan && kept.labels === labels && kept.pose === pose && kept.boat === this.boat) return kept.returns;
-    const returns = toReturns(scan, labels, this.boat, pose, turn_radps);
-    this.kept = { scan, labels, pose, boat: this.boat, returns };
+    if (kept !== null && isSame(kept.first, first) && isSame(kept.second, second) && kept.pose === pose && kept.boat === this.boat) return kept.returns;
+    const returns = toReturns(first, second, this.boat, pose, turn_radps);
+    this.kept = { first, second, pose, boat: this.boat, returns };
     return returns;
+  }
+
+  // What the second lidar saw last until the end of the first's scan.
+  private seenBySecond(end_utime_us: number): Looked | null {
+    const seen = this.second.scans.findLast(({ scan }) => scan[0]!.end_utime_us <= end_utime_us);
+    if (seen === undefined || end_utime_us - seen.scan[0]!.end_utime_us > kSecondBefore_us) return null;
+    return { scan: seen.scan, labels: this.second.labels.findLast((parts) => parts[0]!.utime_us === seen.scan[0]!.utime_us) ?? kNoParts };
   }
 
   picture(): Picture {
@@ -183,7 +213,7 @@ export class Assembler {
     const newest = Math.max(0, ...this.times.values());
     return {
       utime_us: first?.utime_us ?? tracksParts[0]?.utime_us ?? newest, end_utime_us, boat: this.boat, scan,
-      returns: scan.length === 0 ? null : this.returnsOf(scan, isOfScan ? segmentParts : kNoParts, pose, motion.turn_radps),
+      returns: scan.length === 0 ? null : this.returnsOf({ scan, labels: isOfScan ? segmentParts : kNoParts }, this.seenBySecond(end_utime_us), pose, motion.turn_radps),
       segments, obstacles: this.obstacles.whole.flatMap((part) => part.obstacles), tracks,
       track_by_id: new Map(tracks.map((track) => [track.id, track])), track_of_segment, land_segments, waterline_map_m: this.waterline,
       alerts, alert_report: this.alerts, alert_of_track, name_of_track, pose,
@@ -232,29 +262,43 @@ function motionOf(poses: wire.Pose[], pose: wire.Pose | null): { turn_radps: num
   return { turn_radps: Number.isFinite(turn) ? turn : 0 };
 }
 
-// Where each return lies, by the mounting of the lidar and the attitude: roll positive starboard down, pitch positive bow up.
-function toReturns(scan: wire.LidarScan[], labels: wire.Segments[], boat: BoatFacts | null, pose: wire.Pose | null, turn_radps: number): Returns {
-  let room = 0;
-  for (const part of scan) for (const range of part.range) if (range !== 0) ++room;
+const kNoMounting: Mounting = { x_m: 0, y_m: 0, z_m: 0, roll_deg: 0, pitch_deg: 0, yaw_deg: 0 };
+function numReturns(scan: wire.LidarScan[]): number {
+  let count = 0;
+  for (const part of scan) for (const range of part.range) if (range !== 0) ++count;
+  return count;
+}
+
+/** Where each return of both lidars lies, at the end of the first's scan. */
+export function toReturns(first: Looked, second: Looked | null, boat: BoatFacts | null, pose: wire.Pose | null, turn_radps: number): Returns {
+  const room = numReturns(first.scan) + numReturns(second?.scan ?? []);
   const returns: Returns = {
-    count: 0, level_m: new Float32Array(3 * room), range_m: new Float32Array(room), reflectivity: new Uint8Array(room),
-    label: new Int16Array(room), column: new Uint16Array(room), ring: new Uint8Array(room), return_index: new Uint8Array(room),
+    count: 0, first_count: 0, level_m: new Float32Array(3 * room), range_m: new Float32Array(room), reflectivity: new Uint8Array(room),
+    label: new Int32Array(room), column: new Uint16Array(room), ring: new Uint8Array(room), return_index: new Uint8Array(room),
   };
-  const mounting = boat?.lidar ?? { x_m: 0, y_m: 0, z_m: 0, roll_deg: 0, pitch_deg: 0, yaw_deg: 0 };
+  const end_us = first.scan[0]!.end_utime_us, up = boat?.reference_point_above_water_m ?? 0;
+  addReturns(returns, first, boat?.lidar ?? kNoMounting, 0, { end_us, up, pose, turn_radps });
+  returns.first_count = returns.count;
+  if (second !== null && boat?.lidar_2) addReturns(returns, second, boat.lidar_2, kSecondLidar, { end_us, up, pose, turn_radps });
+  return returns;
+}
+
+// By the mounting of the lidar and the attitude: roll positive starboard down, pitch positive bow up.
+function addReturns(returns: Returns, { scan, labels }: Looked, mounting: Mounting, label_offset: number, moved: { end_us: number; up: number; pose: wire.Pose | null; turn_radps: number }): void {
+  const { end_us, pose, turn_radps } = moved;
   const degree = Math.PI / 180;
   const R_vessel_lidar = rotation(mounting.yaw_deg * degree, mounting.pitch_deg * degree, mounting.roll_deg * degree);
   // Attitude: pitch bow up is a negative turn about y (port); roll starboard down a positive one about x.
   const R_level_vessel = rotation(0, pose?.has_attitude ? -pose.pitch_rad : 0, pose?.has_attitude ? pose.roll_rad : 0);
   const R = product(R_level_vessel, R_vessel_lidar);
   const lever = apply(R_level_vessel, [mounting.x_m, mounting.y_m, mounting.z_m]);
-  const up = (boat?.reference_point_above_water_m ?? 0) + (pose !== null && Number.isFinite(pose.heave_m) ? pose.heave_m : 0);
+  const up = moved.up + (pose !== null && Number.isFinite(pose.heave_m) ? pose.heave_m : 0);
   let speed_x = 0, speed_y = 0;
   if (pose !== null && Number.isFinite(pose.velocity_map_mps[0]!) && Number.isFinite(pose.heading_rad)) {
     const sin = Math.sin(pose.heading_rad), cos = Math.cos(pose.heading_rad);
     speed_x = pose.velocity_map_mps[0]! * sin + pose.velocity_map_mps[1]! * cos;
     speed_y = -pose.velocity_map_mps[0]! * cos + pose.velocity_map_mps[1]! * sin;
   }
-  const end_us = scan[0]!.end_utime_us;
   for (const part of scan) {
     const label = labels.find((candidate) => candidate.first_column === part.first_column && candidate.num_columns === part.num_columns)?.label;
     const cosElevation = part.elevation_rad.map(Math.cos), sinElevation = part.elevation_rad.map(Math.sin);
@@ -282,14 +326,14 @@ function toReturns(scan: wire.LidarScan[], labels: wire.Segments[], boat: BoatFa
         returns.level_m[3 * i + 2] = lz + up;
         returns.range_m[i] = range;
         returns.reflectivity[i] = part.reflectivity[index]!;
-        returns.label[i] = label?.[index] ?? 0;
+        const own = label?.[index] ?? 0;
+        returns.label[i] = own > 0 ? own + label_offset : own;
         returns.column[i] = part.first_column + column;
         returns.ring[i] = ring;
         returns.return_index[i] = cell % part.num_returns;
       }
     }
   }
-  return returns;
 }
 
 /** Rotation matrix Rz(yaw) Ry(pitch) Rx(roll), row by row; radians, right-handed. */

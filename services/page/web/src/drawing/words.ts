@@ -1,5 +1,5 @@
 // What is said of one return.
-import type { Picture } from "../picture.js";
+import { kSecondLidar, type Picture } from "../picture.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { bearing, length } from "../units.js";
@@ -9,6 +9,7 @@ import { shortNameOf } from "../views/track_words.js";
 export function describeLabel(picture: Picture, label: number): string {
   if (label < 0) return texts.drawing.reasons[-label] ?? texts.drawing.no_label;
   if (label === 0) return texts.drawing.no_label;
+  if (label > kSecondLidar) return texts.drawing.second_lidar(texts.drawing.segment(label - kSecondLidar));
   const track = picture.track_of_segment.get(label);
   const what = track !== undefined ? shortNameOf(track, picture) : picture.land_segments.has(label) ? texts.drawing.land : "";
   return what === "" ? texts.drawing.segment(label) : `${what}, ${texts.drawing.segment(label)}`;

@@ -34,7 +34,7 @@ export const en = {
     true_bearing: (bearing: string) => `${bearing} T`, relative_bearing: (bearing: string) => `${bearing} from the bow`,
     no_scan: "No scan to show", return_kinds: { 1: "strongest", 2: "last" } as Record<number, string>,
     tip: (range: string, bearing: string, height: string, reflectivity: number, what: string) => `${what}\n${range}, ${bearing} from the bow\n${height} above water, reflectivity ${reflectivity}`,
-    segment: (id: number) => `segment ${id}`, land: "land", no_label: "not segmented",
+    segment: (id: number) => `segment ${id}`, second_lidar: (what: string) => `${what} of the second lidar`, land: "land", no_label: "not segmented",
     reasons: { 1: "nearer or further than is used", 2: "own boat", 3: "outside of the field of view", 4: "behind a nearer return", 5: "too few returns" } as Record<number, string>,
     bow: "bow", port: "port", starboard: "starboard", stern: "stern", no_tiles: "No chart tiles on board: grid only", no_place: { position: "No position at this time: no place on the map", heading: "No heading at this time: no place on the map" },
   },

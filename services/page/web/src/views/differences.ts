@@ -25,8 +25,10 @@ const kSameTrack_m = 2;
 const kOtherSpeed_mps = 0.5;
 const kOtherApproach_m = 2;
 
+type Labels = Int16Array | Int32Array;
+
 /** Segments that go together: those with more than half of their returns in common. */
-function pairSegments(first: Int16Array, second: Int16Array): Map<number, number> {
+function pairSegments(first: Labels, second: Labels): Map<number, number> {
   const sizes = [new Map<number, number>(), new Map<number, number>()], common = new Map<number, number>();
   const add = (counts: Map<number, number>, key: number) => { counts.set(key, (counts.get(key) ?? 0) + 1); };
   for (let i = 0; i < first.length; ++i) {
@@ -86,13 +88,13 @@ function apart_m(one: Track, other: Track): number {
   return Math.hypot(east, north);
 }
 
-/** What two pictures of the same scan say of its returns, tracks and alerts. */
+/** What two pictures of the same scan say of its returns (of the first lidar), tracks and alerts. */
 export function compare(first: Picture, second: Picture, moved_m: number): Differences {
   const a = first.returns, b = second.returns;
-  return compareLabels(first, second, a?.label ?? null, b?.label ?? null, moved_m);
+  return compareLabels(first, second, a?.label.subarray(0, a.first_count) ?? null, b?.label.subarray(0, b.first_count) ?? null, moved_m);
 }
 /** The same with the labels of the returns beside the pictures; a label of 0 is no return. */
-export function compareLabels(first: Picture, second: Picture, a: Int16Array | null, b: Int16Array | null, moved_m: number): Differences {
+export function compareLabels(first: Picture, second: Picture, a: Labels | null, b: Labels | null, moved_m: number): Differences {
   const none = { numReturns: 0, otherReturns: new Uint32Array(), segmentsOnlyInFirst: [], segmentsOnlyInSecond: [], tracks: [], alertsOnlyInFirst: [], alertsOnlyInSecond: [] };
   if (first.utime_us !== second.utime_us || a === null || b === null || a.length !== b.length) return { isSameScan: false, ...none };
   const segments = pairSegments(a, b);

@@ -124,7 +124,7 @@ export class RangeImageView implements View {
     const { bytes } = returnColours(this.state, picture, this.state.settings.get("image_colour_by"));
     // When columns are wider than a pixel, each fills all of its pixels.
     const wide = Math.max(1, Math.ceil(width / this.span / Math.max(1, numColumns)));
-    for (let i = 0; i < returns.count; ++i) {
+    for (let i = 0; i < returns.first_count; ++i) {
       let turn = this.turns[returns.column[i]!]! - this.middle;
       turn -= Math.round(turn);
       const from = Math.floor((turn / this.span + 0.5) * width), row = returns.return_index[i]! * this.numRings + this.numRings - 1 - returns.ring[i]!;
@@ -197,7 +197,7 @@ export class RangeImageView implements View {
     const { picture } = this.state;
     if (picture === null || picture.returns === null || this.hover === null || isOld(this.state)) { this.stage.setTip(""); this.state.mark({}); return; }
     const index = this.at(this.hover.x, this.hover.y);
-    if (index < 0 || index >= picture.returns.count) { this.stage.setTip(""); this.state.mark({}); return; }
+    if (index < 0 || index >= picture.returns.first_count) { this.stage.setTip(""); this.state.mark({}); return; }
     const label = picture.returns.label[index]!;
     this.state.mark({ track: picture.track_of_segment.get(label)?.id ?? null, segment: label > 0 ? label : null });
     this.stage.setTip(describeReturn(this.state, picture, index), this.hover.x, this.hover.y);
