@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Formats of others, written and read by programs of others.
-#   formats_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (ros, mcap, foxglove or las)
+#   formats_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (ros, mcap, foxglove, las or pcd)
 # Packages of npm are installed into the build folder, as package-lock.json has them: without the network the trial is skipped.
 set -euo pipefail
 trial=$1
@@ -12,6 +12,7 @@ skip() { echo "skipped: $*"; exit 77; }
 python=/usr/bin/python3  # Debian's, which has Debian's packages
 [ -x $python ] || skip "there is no $python"
 $python -c 'import numpy, pandas' 2>/dev/null || skip "python3-pandas is not installed"
+[ "$trial" != pcd ] || command -v pcl_convert_pcd_ascii_binary >/dev/null || skip "pcl-tools is not installed"
 [ "$trial" != ros ] || $python -c 'import rosbag' 2>/dev/null || skip "python3-rosbag is not installed"
 for program in npm node zstd lz4; do command -v $program >/dev/null || skip "$program is not installed"; done
 if ! cmp -s "$here/package-lock.json" "$npm_folder/installed"; then
