@@ -13,6 +13,7 @@
 #include "services/lidar/core/vlp16/packet_format.hpp"
 #include "services/lidar/io/capture_reader.hpp"
 #include "tools/doctor/cable.hpp"
+#include "tools/doctor/machine.hpp"
 #include "tools/setup/serial_search.hpp"
 
 namespace lookout::setup {
@@ -101,6 +102,7 @@ Heard Listen(std::chrono::milliseconds duration, const std::vector<std::filesyst
   } catch (const std::exception& error) {
     faults.emplace_back(error.what());
   }
+  const auto own_addresses = doctor::ReadInterfaces();
   std::vector<SerialSearch> searches(devices.begin(), devices.end());
   const auto end = std::chrono::steady_clock::now() + duration;
   const auto is_done = [](const SerialSearch& search) { return search.IsDone(); };
@@ -108,9 +110,10 @@ Heard Listen(std::chrono::milliseconds duration, const std::vector<std::filesyst
     io::ThrowIfStopAsked();
     const auto now = runtime::HostNow();
     cable.Poll(now, [&](const io::Source::Piece& piece) {
-      // What interfaces show comes to the sockets, too; loopback is not captured.
+      // What interfaces show comes to the sockets, too; loopback is not captured. What this computer sends is no sensor's.
       const bool is_frame = !piece.destination_address.empty();
       const auto sender = io::ParseIpAddress(piece.source_address);
+      if (is_frame && sender && std::ranges::find(own_addresses, sender, &doctor::InterfaceSeen::address) != own_addresses.end()) return;
       if (is_frame || !cable.hears_all_ports() || (sender && io::IsLoopback(*sender))) ear.Take(piece);
     });
     if (nmea) {

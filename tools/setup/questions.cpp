@@ -27,8 +27,13 @@ std::string Trimmed(const std::string& text) {
   return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-// "5.2 x 2.1", "1,2 0 1.5", "1.2m, 0, 1.5 m": numbers with a point, apart by blanks, x, commas or semicolons; nullopt: something else is in it.
+// "5.2 x 2.1", "1.2m, 0, 1.5 m": numbers with a point, apart by blanks, x, commas or semicolons; nullopt: something else is in it. So is a comma
+// between digits: 5,2 may be meant as one number.
 std::optional<std::vector<double>> Numbers(const std::string& text) {
+  const auto is_digit = [](char letter) { return letter >= '0' && letter <= '9'; };
+  for (std::size_t i = 1; i + 1 < text.size(); ++i) {
+    if (text[i] == ',' && is_digit(text[i - 1]) && is_digit(text[i + 1])) return std::nullopt;
+  }
   std::string plain = text;
   for (auto& letter : plain) {
     if (letter == ',' || letter == ';' || letter == 'x') letter = ' ';

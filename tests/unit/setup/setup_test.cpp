@@ -92,7 +92,7 @@ TEST(Questions, TakeUsualAnswersForEmptyLines) {
 TEST(Questions, AreAskedAgainWithTheReason) {
   const auto talk = TalkOf(
       "Ida\n"
-      "\nfive x two\n5.2\n2.1 5.2\n5.2 x 900\nnan 2\n5.2 m x 2.1m\n"
+      "\nfive x two\n5,2\n5.2\n2.1 5.2\n5.2 x 900\nnan 2\n5.2 m x 2.1m\n"
       "1.2 0\n1.2 0 -1\n40 0 1\n1.2 9 1\n1.2 0 1.5\n"
       "up\nport\n"
       "upside down\n"
@@ -102,9 +102,10 @@ TEST(Questions, AreAskedAgainWithTheReason) {
       OneLidar());
   ASSERT_TRUE(talk.is_whole) << talk.text;
   for (const auto* reason :
-       {"an answer is needed here", "'five x two' holds what is no number: 2 numbers, with a point as in 1.5", "1 number came: 2 numbers",
-        "hull_beam_m: must not be greater than the length (5.2 against 2.1 m)", "hull_beam_m: must be at most 40 (is 900)",
-        "hull_length_m: must be a finite number", "2 numbers came: 3 numbers", "lidar.above_water_m: must be above the water, greater than 0 (is -1)",
+       {"an answer is needed here", "'five x two' holds what is no number: 2 numbers, with a point as in 1.5", "'5,2' holds what is no number",
+        "1 number came: 2 numbers", "hull_beam_m: must not be greater than the length (5.2 against 2.1 m)",
+        "hull_beam_m: must be at most 40 (is 900)", "hull_length_m: must be a finite number", "2 numbers came: 3 numbers",
+        "lidar.above_water_m: must be above the water, greater than 0 (is -1)",
         "lidar.behind_bow_m: is more than 2 m outside of a hull of 5.2 m (is 40)",
         "lidar.to_port_m: is more than 2 m outside of a hull 2.1 m wide (is 9)", "'up' holds what is no number", "'here' holds what is no number",
         "guard_zone_m: must reach beyond the bow, which is 2.8 m ahead of the middle (is 2)", "'nobody' is neither: this computer, everybody"}) {
