@@ -53,7 +53,7 @@ done
 rows() { "$bin/lookout-export" --in lake.lcmlog --table "$1" 2>/dev/null | tail -n +2 | wc -l; }
 [ "$(rows obstacles)" -gt 100 ] || fail "$(rows obstacles) obstacles"
 [ "$(rows tracks)" -gt 100 ] || fail "$(rows tracks) tracks"
-"$bin/lookout-export" --in lake.lcmlog --table obstacles 2>/dev/null | grep -q ',ok$' || fail "no obstacle has a place on the earth"
+"$bin/lookout-export" --in lake.lcmlog --table obstacles 2>/dev/null | grep -q ',ok' || fail "no obstacle has a place on the earth"
 # Out of the log the same again: its RUN_INFO holds the values of the one file.
 "$bin/lookout-replay" --config boat --in lake.lcmlog --out same.lcmlog >same.txt 2>said.txt || fail "the replay of the log"
 diff digests.txt same.txt || fail "the replay of the log differs"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -60,7 +59,9 @@ void CopyStaying(const fs::path& from, const fs::path& to, const std::vector<fs:
 void CheckBoat(const fs::path& folder, const std::string& text) {
   const TrialFolder trial;
   CopyStaying(folder, trial.path(), ReplacedFiles(folder));
-  std::ofstream(trial.path() / kBoatFile) << text;
+  io::OutputFile boat_file(trial.path() / kBoatFile);
+  boat_file.Write(text);
+  boat_file.Commit();
   config::FaultList faults;
   for (const auto& [file, lines] : doctor::ReadConfig(trial.path()).files) {
     // Lines begin with the path of a file: of the place that it will have.
