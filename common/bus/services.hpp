@@ -22,7 +22,6 @@ struct ServiceRow {
   std::string_view state;   // remembered from message to message, and lost at a restart
   // nullptr: no more. The recorder reads every channel. HEALTH and RUN_INFO tell of processes, and are in no row.
   std::array<const Channel*, 16> inputs{};
-  bool config_may_be_absent = false;  // <name>.txtpb: then it runs by its defaults
 };
 
 // Readers stand behind the publishers of what they read. A boat starts them in the reverse order, so that no reader misses a first message.
@@ -30,8 +29,7 @@ inline constexpr std::array kServices{
     ServiceRow{
         "lidar", "lidar", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {&kLidarBeams}},
     ServiceRow{"segmenter", "segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan, &kLidarScan2}},
-    ServiceRow{
-        "odometer", "odometer", "own motion by the lidar", 10, "network", "checks the config", "what stood in sight, speed", {&kLidarScan}, true},
+    ServiceRow{"odometer", "odometer", "own motion by the lidar", 10, "network", "checks the config", "what stood in sight, speed", {&kLidarScan}},
     ServiceRow{"navigator",
                "navigator",
                "position and attitude of the vessel",
@@ -63,8 +61,7 @@ inline constexpr std::array kServices{
                "serial",
                "checks the config",
                "target numbers, what was told to whom",
-               {&kTracks, &kAlerts, &kPose},
-               true},
+               {&kTracks, &kAlerts, &kPose}},
     ServiceRow{"page",
                "page",
                "the look-out in a browser",
@@ -72,8 +69,7 @@ inline constexpr std::array kServices{
                "logs",
                "checks the config",
                "who watches, the last minutes where no recorder runs",
-               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kAlertAck},
-               true},
+               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kAlertAck}},
     ServiceRow{"recorder", "recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
 
 constexpr bool Publishes(const ServiceRow& service, const Channel& channel) { return channel.publisher == service.role; }

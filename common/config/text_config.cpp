@@ -18,6 +18,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/config/boat_sections.hpp"
 #include "common/config/schemas.hpp"
 #include "common/config/text_salvage.hpp"
 #include "config/schema/options.pb.h"
@@ -283,16 +284,19 @@ std::string EffectiveText(const Message& message, const std::string& indent) {
 // lidar_2.txtpb is of the schema of lidar.txtpb.
 constexpr std::string_view kOfSecond = "_2";
 
-std::string EffectiveTextOfFile(const std::filesystem::path& file) {
-  const std::string text = ReadConfigFile(file);
+const Descriptor* SchemaOfFile(const std::filesystem::path& file) {
   // All scenes, families and encounters have one schema, whatever their names; so has all evidence.
   const auto folder = file.parent_path().filename();
   const bool is_scene = folder == "scenes" || folder == "families" || folder == "encounters";
   auto stem = file.filename() == kOldLidarFile ? std::filesystem::path(kLidarFile).stem().string() : file.stem().string();
   if (stem.ends_with(kOfSecond)) stem.resize(stem.size() - kOfSecond.size());
-  const std::string schema_file = "config/schema/" + (is_scene ? "scene" : folder == "evidence" ? "evidence" : stem) + ".proto";
-  const auto* descriptor = FindSchema(schema_file);
-  if (descriptor == nullptr) throw ConfigError({file.string() + ":1: file: there is no " + schema_file});
+  return FindSchema("config/schema/" + (is_scene ? "scene" : folder == "evidence" ? "evidence" : stem) + ".proto");
+}
+
+std::string EffectiveTextOfFile(const std::filesystem::path& file) {
+  const std::string text = ReadConfigFile(file);
+  const auto* descriptor = SchemaOfFile(file);
+  if (descriptor == nullptr) throw ConfigError({NoSchemaFault(file)});
   const std::unique_ptr<Message> message(google::protobuf::MessageFactory::generated_factory()->GetPrototype(descriptor)->New());
   ParseText(text, file.string(), *message);
   return EffectiveText(*message);
@@ -300,20 +304,21 @@ std::string EffectiveTextOfFile(const std::filesystem::path& file) {
 
 std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason, std::size_t index) {
   // The line of the place in which the value is set, or of the last one before it; 1 when there is none (a default is in force).
-  int line_number = 1;
-  std::istringstream text(ReadConfigFile(file));
+  const auto place = FindValues(file);
+  int line_number = place.first_line;
+  std::istringstream text(place.text);
   int number = 0;
   std::size_t num_places = 0;
   const std::string key = field.substr(field.rfind('.') + 1);
   for (std::string line; std::getline(text, line);) {
     ++number;
     const auto words = line.substr(0, line.find('#'));
-    for (auto place = words.find(key); place != std::string::npos && num_places <= index; place = words.find(key, place + 1)) {
+    for (auto position = words.find(key); position != std::string::npos && num_places <= index; position = words.find(key, position + 1)) {
       line_number = number;
       ++num_places;
     }
   }
-  return file.string() + ":" + std::to_string(line_number) + ": " + field + ": " + reason;
+  return place.file.string() + ":" + std::to_string(line_number) + ": " + place.prefix + field + ": " + reason;
 }
 
 }  // namespace lookout::config

@@ -66,11 +66,18 @@ void LoadText(const std::filesystem::path& file, google::protobuf::Message& mess
 /// The same from text; `name` stands in for the path in faults.
 void ParseText(const std::string& text, const std::string& name, google::protobuf::Message& message);
 
-/// @return the message loaded from `folder`/`file_name`
+/// The values of a file of a boat's folder: of the file, else of its section in boat.txtpb, else the defaults of the schema. A file that boat.proto
+/// has no section for must be there.
+///
+/// @throws ConfigError as LoadText; and where file and section are both there, or a file of the folder is of no schema while this one is absent: a
+/// wrong name would go unnoticed
+void LoadOfBoat(const std::filesystem::path& folder, const std::string& file_name, google::protobuf::Message& message);
+
+/// The same, as a value.
 template <typename Message>
 Message Load(const std::filesystem::path& folder, const std::string& file_name) {
   Message message;
-  LoadText(folder / file_name, message);
+  LoadOfBoat(folder, file_name, message);
   return message;
 }
 
@@ -80,7 +87,11 @@ std::string EffectiveText(const google::protobuf::Message& message, const std::s
 /// @return EffectiveText of a file; x.txtpb has the schema config/schema/x.proto. @throws ConfigError
 std::string EffectiveTextOfFile(const std::filesystem::path& file);
 
-/// A fault of a relation between fields, found by a service, as a line of a ConfigError: "path:line: field: reason".
+/// The schema of a file, by its name and folder; nullptr: there is none.
+const google::protobuf::Descriptor* SchemaOfFile(const std::filesystem::path& file);
+
+/// A fault of a relation between fields, found by a service, as a line of a ConfigError: "path:line: field: reason". Where the values of the file
+/// stand in boat.txtpb, it is the line there.
 ///
 /// @param index  of a repeated field: which of its values
 std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason, std::size_t index = 0);

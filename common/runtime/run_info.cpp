@@ -13,6 +13,7 @@
 
 #include "common/bus/schema.hpp"
 #include "common/config/boat.hpp"
+#include "common/config/boat_sections.hpp"
 #include "common/config/text_config.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/version.hpp"
@@ -22,15 +23,6 @@ namespace lookout::runtime {
 namespace {
 
 constexpr std::string_view kBoatFile = "boat.txtpb";
-
-std::vector<std::string> ConfigFiles(const std::filesystem::path& config_folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(config_folder)) {
-    if (entry.path().extension() == ".txtpb") names.push_back(entry.path().filename().string());
-  }
-  std::ranges::sort(names);
-  return names;
-}
 
 // The makers' files about a lidar's beams (beam_file in lidar.txtpb): without them its packets cannot be read. Other files may lie in the folder,
 // too: what cannot be read, or does not fit into a message, is left out.
@@ -121,8 +113,8 @@ run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& 
   message.host = HostName();
   message.schema = bus::SchemaDigest();
   config::FaultList faults;
-  for (const auto& name : ConfigFiles(config_folder)) {
-    faults.Try([&] { message.file_text.push_back(config::EffectiveTextOfFile(config_folder / name)); });
+  for (const auto& name : config::FilesInForce(config_folder)) {
+    faults.Try([&] { message.file_text.push_back(config::EffectiveTextOf(config_folder, name)); });
     message.file_name.push_back(name);
   }
   faults.ThrowIfAny();
@@ -138,11 +130,11 @@ run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& 
 }
 
 std::string EffectiveConfig(const std::filesystem::path& config_folder, std::vector<std::string> file_names) {
-  if (file_names.empty()) file_names = ConfigFiles(config_folder);
+  if (file_names.empty()) file_names = config::FilesInForce(config_folder);
   std::string text;
   config::FaultList faults;
   for (const auto& name : file_names) {
-    faults.Try([&] { text += "# " + name + "\n" + config::EffectiveTextOfFile(config_folder / name); });
+    faults.Try([&] { text += "# " + name + "\n" + config::EffectiveTextOf(config_folder, name); });
     // The service checks relations between fields; here are words alone.
     config::FaultList untold;
     if (name == kBoatFile) untold.Try([&] { text += config::RemarksAsComments(config::LoadBoat(config_folder)); });

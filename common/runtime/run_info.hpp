@@ -9,12 +9,13 @@
 
 namespace lookout::runtime {
 
-/// @return RUN_INFO without time and number: version, host, schema, the effective text of every *.txtpb in the folder, by name, "machine.txt"
+/// @return RUN_INFO without time and number: version, host, schema, the effective text of every file in force (config::FilesInForce), by name,
+/// "machine.txt"
 ///         (MachineText), and the texts of the wire types ("lcmtypes/x_t.lcm")
 /// @throws config::ConfigError
 run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& config_folder);
 
-/// The output of --check: the values in force of these files of the folder (empty = of every *.txtpb), each under its name.
+/// The output of --check: the values in force of these files of the folder (empty = of all), each under its name, wherever they stand.
 std::string EffectiveConfig(const std::filesystem::path& config_folder, std::vector<std::string> file_names = {});
 
 /// Facts of the computer, for RUN_INFO. Lines "name: value": architecture, kernel, processor, its features by which C libraries choose variants of

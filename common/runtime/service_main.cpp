@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "common/bus/lcm_url.hpp"
-#include "common/bus/services.hpp"
 #include "common/config/boat_folder.hpp"
 #include "common/config/text_config.hpp"
 #include "common/runtime/run_info.hpp"
@@ -69,10 +68,7 @@ struct Checked {
 Checked CheckConfig(const ServiceProgram<AnyParams>& program, const std::filesystem::path& config_folder) {
   config::FaultList faults;
   const auto params = faults.Take([&] { return program.load(config_folder); });
-  std::vector<std::string> files{"boat.txtpb", program.name + ".txtpb"};
-  const auto row = std::ranges::find(bus::kServices, program.name, &bus::ServiceRow::name);
-  const bool may_be_absent = row != bus::kServices.end() && row->config_may_be_absent;
-  if (may_be_absent && !std::filesystem::exists(config_folder / files.back())) files.pop_back();
+  const std::vector<std::string> files{"boat.txtpb", program.name + ".txtpb"};
   const auto text = faults.Take([&] { return EffectiveConfig(config_folder, files); });
   faults.ThrowIfAny();
   return {*params, *text};

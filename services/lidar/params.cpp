@@ -187,8 +187,7 @@ Params LoadParams(const std::filesystem::path& config_folder, int number) {
 
 Params LoadParams(const std::filesystem::path& config_folder, int number, std::vector<std::string>& faults) {
   const auto file = config_folder / ConfigFileName(number);
-  config::Lidar message;
-  config::LoadText(file, message);
+  const auto message = config::Load<config::Lidar>(config_folder, ConfigFileName(number));
   CheckRelations(file, message, faults);
 
   Params params;

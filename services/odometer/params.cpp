@@ -11,7 +11,6 @@ namespace {
 
 config::Odometer LoadMessage(const std::filesystem::path& config_folder) {
   const auto file = config_folder / "odometer.txtpb";
-  if (!std::filesystem::exists(file)) return {};
   auto message = config::Load<config::Odometer>(config_folder, "odometer.txtpb");
   config::FaultList faults;
   if (message.max_range_m() <= message.min_range_m()) faults.Add(config::FaultLine(file, "max_range_m", "must be greater than min_range_m"));

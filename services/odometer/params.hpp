@@ -9,7 +9,7 @@ namespace lookout::odometer {
 
 using Params = OdometerParams;
 
-/// @param config_folder  the boat's folder; without odometer.txtpb its defaults count
+/// @param config_folder  the boat's folder
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
 

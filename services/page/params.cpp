@@ -114,14 +114,11 @@ Params LoadParams(const fs::path& config_folder) {
   const auto boat = faults.Take([&] { return config::LoadBoat(config_folder); });
   Params params;
   bool follows_recorder = true;
-  std::error_code error;
-  if (fs::exists(config_folder / kFile, error)) {
-    faults.Try([&] {
-      const auto message = config::Load<config::Page>(config_folder, std::string(kFile));
-      Reader(config_folder, message).ReadInto(params);
-      follows_recorder = message.follows_recorder();
-    });
-  }
+  faults.Try([&] {
+    const auto message = config::Load<config::Page>(config_folder, std::string(kFile));
+    Reader(config_folder, message).ReadInto(params);
+    follows_recorder = message.follows_recorder();
+  });
   faults.ThrowIfAny();
   params.boat = boat->name;
   config::Recorder recorder;

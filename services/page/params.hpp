@@ -36,8 +36,7 @@ struct Params {
   std::optional<FoxgloveParams> foxglove = {};                // nullopt: not at all
 };
 
-/// @param config_folder  the boat's folder, holding boat.txtpb, recorder.txtpb (for its log_folder and reserve_bytes) and page.txtpb, which may be
-/// absent
+/// @param config_folder  the boat's folder, holding boat.txtpb, recorder.txtpb (for its log_folder and reserve_bytes) and page.txtpb
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
 

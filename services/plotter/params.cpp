@@ -272,18 +272,14 @@ Params LoadParams(const fs::path& config_folder) {
   config::FaultList faults;
   const auto boat = faults.Take([&] { return config::LoadBoat(config_folder); });
   Params params;
-  std::error_code error;
-  if (fs::exists(config_folder / kFile, error)) {
-    const auto message = faults.Take([&] { return config::Load<config::Plotter>(config_folder, std::string(kFile)); });
-    const auto outputs = faults.Take([&] { return message ? OutputsReader(config_folder, *message).Read() : std::vector<OutputParams>(); });
-    faults.ThrowIfAny();
-    params.takes_tentative = message->takes_tentative();
-    params.target_period = ToMicroseconds(message->target_period_s());
-    params.own_ship_period = ToMicroseconds(message->own_ship_period_s());
-    params.number_quarantine = ToMicroseconds(message->number_quarantine_s());
-    params.outputs = *outputs;
-  }
+  const auto message = faults.Take([&] { return config::Load<config::Plotter>(config_folder, std::string(kFile)); });
+  const auto outputs = faults.Take([&] { return message ? OutputsReader(config_folder, *message).Read() : std::vector<OutputParams>(); });
   faults.ThrowIfAny();
+  params.takes_tentative = message->takes_tentative();
+  params.target_period = ToMicroseconds(message->target_period_s());
+  params.own_ship_period = ToMicroseconds(message->own_ship_period_s());
+  params.number_quarantine = ToMicroseconds(message->number_quarantine_s());
+  params.outputs = *outputs;
   params.boat = boat->name;
   return params;
 }

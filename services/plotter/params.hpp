@@ -50,7 +50,7 @@ struct Params {
   std::vector<OutputParams> outputs = {};
 };
 
-/// @param config_folder  the boat's folder, holding boat.txtpb and plotter.txtpb; without the latter there are no outputs
+/// @param config_folder  the boat's folder, holding boat.txtpb and plotter.txtpb
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
 

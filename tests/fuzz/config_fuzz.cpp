@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/config/text_config.hpp"
+#include "config/schema/answers.pb.h"
 #include "config/schema/boat.pb.h"
 #include "config/schema/georeferencer.pb.h"
 #include "config/schema/lidar.pb.h"
@@ -29,6 +30,7 @@ void ParseAs(const std::string& text) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
+  ParseAs<lookout::config::Answers>(text);
   ParseAs<lookout::config::Boat>(text);
   ParseAs<lookout::config::Georeferencer>(text);
   ParseAs<lookout::config::Tracker>(text);

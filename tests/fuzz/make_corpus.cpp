@@ -404,6 +404,15 @@ void WriteAnswers(const Folder& folder) {
                                     R"({"state":"alarm","method":[],"status":{"silenced":true,"acknowledged":true}}}]}]})"));
 }
 
+// Typed answers of lookout-setup; the first letter says what it has heard.
+void WriteTypedAnswers(const Folder& folder) {
+  folder.Write("usual", std::string("1Ida\n5.2 x 2.1\n1.2 0 1.5\n\n\n\n\n\n"));
+  folder.Write("all", std::string("1\n6m, 2m\n-0.5 0.1 1.25\nstarboard\n1 -2\n5.75 -0.4 2\n30\neverybody\n"));
+  folder.Write("none", std::string("0boat\n5.2 2.1\nXT32\n1.2 0 1.5\n90\nupside down\nnone\n0\n\n"));
+  folder.Write("two", std::string("2boat\n5.2;2.1\n2\n1.2 0 1.5\nahead\nlevel\nnone\nas usual\nthis computer\n"));
+  folder.Write("heading", std::string("\x82\nhull\n5,2\n5.2 2.1\n1\n1.2 0 1.5\n\n\n\n-90\n\n\n"));
+}
+
 // What a browser asks the page's server for, and headers of its requests.
 void WritePageRequests(const Folder& folder) {
   folder.Write("watch", std::string(R"({"op":"watch","channels":["LIDAR_SCAN","TRACKS"]})"));
@@ -438,6 +447,7 @@ int main(int argc, char** argv) try {
   WriteOuster(Folder(root / "fuzz_ouster"));
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
   WriteAnswers(Folder(root / "fuzz_plotter"));
+  WriteTypedAnswers(Folder(root / "fuzz_setup"));
   WriteCaptures(Folder(root / "fuzz_capture"));
   WriteLogs(Folder(root / "fuzz_log"));
   WriteMessages(Folder(root / "fuzz_message"));

@@ -144,13 +144,14 @@ sed -i -e 's/^name:/nam:/' -e 's/min_x_m: [-0-9.]*/min_x_m: "aft"/' "$config/boa
 printf 'max_range_m: -1\nbfs_angel_deg: 3\n' >>"$config/segmenter.txtpb"
 printf 'max_sentence_latency_s: 0.9\nmax_attitude_age_s: 0.5\n' >>"$config/navigator.txtpb"
 printf 'position_port: 2368\nallowed_source_address: "lidar"\n' >>"$config/lidar.txtpb"
-rm "$config/georeferencer.txtpb"
+echo 'pose_timeout_s: 0' >"$config/georeferencer.txtpb"
+rm "$config/recorder.txtpb" "$config/page.txtpb"  # absent: no fault
 code=0; "$up" --config "$config" --check >"$work/out.txt" 2>"$work/wrong.txt" || code=$?
 [ "$code" -eq 2 ] || fail "--check with many faults: exit code $code"
 sed -E "s|^$config/||; s/:[0-9]+: /: /" "$work/wrong.txt" >"$work/got.txt"
 for fault in 'boat.txtpb: nam:' 'boat.txtpb: name: must be set' 'boat.txtpb: own_vessel.min_x_m: Expected double' 'segmenter.txtpb: max_range_m: ' \
   'segmenter.txtpb: bfs_angel_deg: ' 'navigator.txtpb: max_sentence_latency_s: must not be greater' 'lidar.txtpb: position_port: must differ' \
-  'lidar.txtpb: allowed_source_address: ' 'georeferencer.txtpb: file: cannot be read'; do
+  'lidar.txtpb: allowed_source_address: ' 'georeferencer.txtpb: pose_timeout_s: must be at least'; do
   [ "$(grep -c -F "$fault" "$work/got.txt")" -eq 1 ] || { cat "$work/got.txt"; fail "--check does not tell once: $fault"; }
 done
 [ "$(wc -l <"$work/got.txt")" -eq 9 ] || { cat "$work/got.txt"; fail "--check tells other faults than those nine"; }

@@ -82,11 +82,11 @@ TEST_F(Doctor, SeesASimulatedBoatByItselfAndThroughItsProcesses) {
 
 TEST_F(Doctor, SaysWhatIsMissingWhereNothingIs) {
   if (IsRouteThere()) GTEST_SKIP() << "for the namespace without a route";
-  fs::remove(folder_ / "config/recorder.txtpb");
+  std::ofstream(folder_ / "config/recorder.txtpb") << "max_file_s: 0\n";
   const auto result = Ask();
   EXPECT_EQ(result.exit_code, 1);
   for (const auto& text :
-       {"config/recorder.txtpb:1: file: cannot be read", "fault    route", "ip route add 239.255.76.0/24 dev lo",
+       {"config/recorder.txtpb:1: max_file_s: must be at least 1", "fault    route", "ip route add 239.255.76.0/24 dev lo",
         "fault    lidar      no lidar packets", "no interface but loopback", "fault    gnss       no sentence came", "fault    process"}) {
     EXPECT_TRUE(Has(result, text)) << text << " is missing in\n" << result.output;
   }

@@ -47,7 +47,6 @@ cat >services/echo/params.cpp <<'TEXT'
 #include "config/schema/echo.pb.h"
 namespace lookout::echo {
 Params LoadParams(const std::filesystem::path& config_folder) {
-  if (!std::filesystem::exists(config_folder / "echo.txtpb")) return {};
   return {config::Load<config::Echo>(config_folder, "echo.txtpb").num_echoes()};
 }
 }  // namespace lookout::echo
@@ -115,7 +114,7 @@ TEXT
 add_before common/bus/channels.hpp 'Channel kHealth[{]' 'inline constexpr Channel kEcho{"ECHO", "echo_t", "echo", 50, 100, false, true};'
 sed -i 's/kOrders, *kHealth,/kOrders, kEcho, kHealth,/' common/bus/channels.hpp
 add_before common/bus/services.hpp '^    ServiceRow[{]"plotter"' \
-  '    ServiceRow{"echo", "echo", "poses again", 10, "network", "checks the config", "none", {&kPose}, true},'
+  '    ServiceRow{"echo", "echo", "poses again", 10, "network", "checks the config", "none", {&kPose}},'
 cat >config/schema/echo.proto <<'TEXT'
 // What comes back: echo.txtpb.
 syntax = "proto2";
@@ -127,6 +126,8 @@ message Echo {
   optional int32 num_echoes = 1 [default = 1, (min) = 0, (max) = 10];
 }
 TEXT
+add_before config/schema/boat.proto '^import "config/schema/georeferencer.proto"' 'import "config/schema/echo.proto";'
+add_before config/schema/boat.proto '^  optional Recorder recorder' '  optional Echo echo = 99 [(may_be_absent) = true];'
 add_before tools/replay/stage.cpp '^#include "services/georeferencer/params.hpp"' '#include "services/echo/params.hpp"\n#include "services/echo/service.hpp"'
 add_before tools/replay/stage.cpp '^      [{]"segmenter", ' \
   '      {"echo", [](const fs::path& folder) { echo::LoadParams(folder); }, Make<PlainStage<echo::Service, echo::LoadParams>>},'

@@ -16,6 +16,7 @@
 #include "common/io/file_lock.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "config/schema/boat.pb.h"
 #include "config/schema/lidar.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "tools/archive/child.hpp"
@@ -71,6 +72,9 @@ void CheckNamedFiles(const fs::path& config) {
     throw config::ConfigError({PrintableLines((config / file).string()) + ": " + field + ": " + Printable(named.string()) +
                                " is outside of the config's folder: an archive keeps a copy of the folder, so put the file below it"});
   };
+  const auto boat = Glance<config::Boat>(config / "boat.txtpb");
+  check("boat.txtpb", "evidence", boat.segmenter().evidence());
+  check("boat.txtpb", "beam_file", boat.lidar_input().beam_file());
   check("segmenter.txtpb", "evidence", Glance<config::Segmenter>(config / "segmenter.txtpb").evidence());
   for (const auto* file : {"lidar.txtpb", "lidar_2.txtpb"}) check(file, "beam_file", Glance<config::Lidar>(config / file).beam_file());
 }

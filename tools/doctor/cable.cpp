@@ -57,15 +57,21 @@ Cable::Cable(const std::vector<int>& ports_in_use) {
   }
 }
 
-void Cable::Poll(Utime now, lidar::Survey& survey) {
+void Cable::Poll(Utime now, const std::function<void(const io::Source::Piece&)>& take) {
   for (auto& source : sources_) {
     source->Poll(now);
     for (int i = 0; i < kMaxPiecesPerPoll; ++i) {
       const auto piece = source->Receive(now);
       if (!piece) break;
-      survey.Add(piece->host_time, piece->source_address, piece->destination_address, piece->port, piece->bytes);
+      take(*piece);
     }
   }
+}
+
+void Cable::Poll(Utime now, lidar::Survey& survey) {
+  Poll(now, [&survey](const io::Source::Piece& piece) {
+    survey.Add(piece.host_time, piece.source_address, piece.destination_address, piece.port, piece.bytes);
+  });
 }
 
 std::int64_t NumReassemblyFailures() {

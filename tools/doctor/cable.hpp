@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,8 @@ class Cable {
   /// @param ports_in_use  the ports of lidar.txtpb: somebody else hears them
   explicit Cable(const std::vector<int>& ports_in_use);
 
+  /// Passes on what waits.
+  void Poll(Utime now, const std::function<void(const io::Source::Piece&)>& take);
   void Poll(Utime now, lidar::Survey& survey);
 
   bool hears_all_ports() const { return hears_all_ports_; }

@@ -24,6 +24,7 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/services.hpp"
+#include "common/config/boat_sections.hpp"
 #include "common/config/text_config.hpp"
 #include "common/io/disk_reserve.hpp"
 #include "common/runtime/process.hpp"
@@ -115,9 +116,9 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
   const auto check = [&](const std::string& file_name, const std::function<void()>& load) {
     config::FaultList found;
     // By itself first: a process whose boat.txtpb is wrong looks no further.
-    found.Try([&] { config::EffectiveTextOfFile(config_folder / file_name); });
+    found.Try([&] { config::EffectiveTextOf(config_folder, file_name); });
     found.Try(load);
-    seen.files[file_name];
+    if (fs::exists(config_folder / file_name) || config::SectionOf(file_name).empty()) seen.files[file_name];
     for (const auto& fault : found.faults()) {
       // Into the file that the line names: a process may find that boat.txtpb is wrong.
       const auto path = fault.substr(0, fault.find(".txtpb:"));
@@ -129,11 +130,10 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
   seen.has_plotter_outputs = false;
   for (const auto& service : ConfigChecks()) {
     const auto file_name = std::string(service.service) + ".txtpb";
-    const auto& row = *std::ranges::find(bus::kServices, service.service, &bus::ServiceRow::name);
-    if (row.config_may_be_absent && !fs::exists(config_folder / file_name)) continue;
     check(file_name, [&] { service.load(config_folder); });
   }
   check("lidar.txtpb", [&] { seen.lidar = lidar::LoadChecked(config_folder); });
+  seen.lidar_place = config::PlaceInWords(config_folder, "lidar.txtpb");
   if (lidar::HasSecond(config_folder)) check("lidar_2.txtpb", [&] { seen.lidar_2 = lidar::LoadChecked(config_folder, 2); });
   // Values for other findings. Faults of these files are told already.
   const auto look = [](const std::function<void()>& load) { config::FaultList().Try(load); };

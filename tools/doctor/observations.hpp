@@ -32,7 +32,8 @@ struct ConfigSeen {
   std::map<std::string, std::vector<std::string>> files;  // by name, without the folder: lines "path:line: field: reason"; none = it is right
   std::optional<config::BoatFacts> boat;
   std::optional<lidar::Params> lidar;
-  std::optional<lidar::Params> lidar_2;  // nullopt: there is none, or its file is wrong
+  std::string lidar_place = "lidar.txtpb";  // where its values stand, or belong, for people
+  std::optional<lidar::Params> lidar_2;     // nullopt: there is none, or its file is wrong
   std::optional<navigator::Params> navigation;
   std::optional<tracker::Params> tracker;
   std::optional<std::filesystem::path> log_folder;  // as the recorder's config says: may be relative

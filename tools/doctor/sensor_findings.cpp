@@ -71,9 +71,9 @@ const lidar::Params* ConfigOf(const lidar::Speaker& speaker, const ConfigSeen& c
   return nullptr;
 }
 
-std::string ConfigText(const lidar::Params& config) {
-  return lidar::ConfigFileName(config.number) + " is for " + lidar::ModelWord(config.other ? std::optional(config.other->model) : std::nullopt) +
-         " on port " + std::to_string(config.data_port);
+std::string ConfigText(const ConfigSeen& seen, const lidar::Params& config) {
+  return (config.number == 1 ? seen.lidar_place : lidar::ConfigFileName(config.number)) + " is for " +
+         lidar::ModelWord(config.other ? std::optional(config.other->model) : std::nullopt) + " on port " + std::to_string(config.data_port);
 }
 
 Finding CheckSpeaker(const lidar::Speaker& speaker, const Observations& seen) {
@@ -82,21 +82,21 @@ Finding CheckSpeaker(const lidar::Speaker& speaker, const Observations& seen) {
     return Warning(kSensorSubject, text + ", which are not read", "services/lidar/README.md says which sensors are read");
   }
   const auto& config = seen.config;
-  if (!config.lidar) return Warning(kSensorSubject, text, "lines for lidar.txtpb: " + LinesOf(speaker));
+  if (!config.lidar) return Warning(kSensorSubject, text, "lines for " + config.lidar_place + ": " + LinesOf(speaker));
   if (const auto* own = ConfigOf(speaker, config)) {
     if (speaker.other == lidar::OtherModel::kOuster) {
       if (auto fault = CheckMetadata(speaker, *own)) return *fault;
     }
     return Ok(kSensorSubject, text);
   }
-  const auto config_for = ConfigText(*config.lidar) + (config.lidar_2 ? ", " + ConfigText(*config.lidar_2) : "");
+  const auto config_for = ConfigText(config, *config.lidar) + (config.lidar_2 ? ", " + ConfigText(config, *config.lidar_2) : "");
   // A lidar beside the one that is used takes no place of its.
   const bool is_first_heard =
       !seen.lidar.model.empty() || std::ranges::any_of(seen.lidar.speakers, [&](const auto& other) { return IsOf(other, *config.lidar); });
-  if (!is_first_heard) return Fault(kSensorSubject, text + ", but " + config_for, "lines for lidar.txtpb: " + LinesOf(speaker));
+  if (!is_first_heard) return Fault(kSensorSubject, text + ", but " + config_for, "lines for " + config.lidar_place + ": " + LinesOf(speaker));
   return Warning(kSensorSubject, text + "; " + config_for,
                  "if it is the second lidar of the boat (services/lidar/README.md, \"Two lidars\"): lines for lidar_2.txtpb: " + LinesOf(speaker) +
-                     "; if that is the lidar to use: the same lines for lidar.txtpb");
+                     "; if that is the lidar to use: the same lines for " + config.lidar_place);
 }
 
 bool IsBroadcast(const std::string& address) { return address.size() > 4 && address.ends_with(".255"); }

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <set>
 #include <spdlog/spdlog.h>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -259,9 +260,18 @@ std::vector<std::string> DifferingConfigFiles(const run_info_t& a, const run_inf
       if (std::filesystem::path(info.file_name[i]).extension() == ".txtpb") texts_of_file[info.file_name[i]].at(side) = info.file_text[i];
     }
   }
+  // An absent file has the defaults; RUN_INFO of before did not hold its text.
+  const auto is_default = [](const std::optional<std::string>& text) {
+    std::istringstream lines(text.value_or(""));
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.ends_with("  # default")) return false;
+    }
+    return true;
+  };
   std::vector<std::string> differing;
   for (const auto& [name, texts] : texts_of_file) {
-    if (texts[0] != texts[1]) differing.push_back(name);
+    const bool is_in_one_alone = !texts[0] || !texts[1];
+    if (texts[0] != texts[1] && !(is_in_one_alone && is_default(texts[0]) && is_default(texts[1]))) differing.push_back(name);
   }
   return differing;
 }

@@ -223,8 +223,7 @@ std::vector<CaptureWithTruth> ListCaptures(const fs::path& folder, CaptureTruth 
 Boat LoadBoatOfCaptures(const fs::path& folder, const fs::path& config_folder) {
   if (!fs::exists(folder / "boat.txtpb")) return LoadBoat(config_folder);
   const auto file = config_folder / "segmenter.txtpb";
-  config::Segmenter message;
-  config::LoadText(file, message);
+  const auto message = config::Load<config::Segmenter>(config_folder, "segmenter.txtpb");
   const auto facts = config::LoadBoat(folder);
   return {config_folder, facts, lidar::LoadParams(config_folder), segmenter::ToParams(message, facts, file)};
 }

@@ -40,8 +40,7 @@ std::filesystem::path LeaveOutEvidence::FileOf(const std::string& scene) const {
 
 segmenter::Params WithEvidence(const Boat& boat, const std::filesystem::path& evidence_file) {
   const auto file = boat.config_folder / "segmenter.txtpb";
-  config::Segmenter message;
-  config::LoadText(file, message);
+  auto message = config::Load<config::Segmenter>(boat.config_folder, "segmenter.txtpb");
   message.set_evidence(std::filesystem::absolute(evidence_file));
   return segmenter::ToParams(message, boat.facts, file);
 }

@@ -59,8 +59,7 @@ double ToNumber(const std::string& sweep, const std::string& text) {
 std::string ValueText(double value) { return fmt::format("{}", std::round(value * 1e6) / 1e6); }
 
 double ValueOfBoat(const Boat& boat, const std::string& field) {
-  config::Segmenter message;
-  config::LoadText(boat.config_folder / "segmenter.txtpb", message);
+  const auto message = config::Load<config::Segmenter>(boat.config_folder, "segmenter.txtpb");
   const auto& descriptor = *config::Segmenter::descriptor()->FindFieldByName(field);
   const auto& reflection = *message.GetReflection();
   if (descriptor.cpp_type() == FieldDescriptor::CPPTYPE_INT32) return reflection.GetInt32(message, &descriptor);
@@ -98,8 +97,7 @@ Sweep ParseSweep(const std::string& text) {
 
 segmenter::Params ParamsWith(const Boat& boat, const std::string& field, double value) {
   const auto file = boat.config_folder / "segmenter.txtpb";
-  config::Segmenter message;
-  config::LoadText(file, message);
+  auto message = config::Load<config::Segmenter>(boat.config_folder, "segmenter.txtpb");
   if (IsOfThePaper(field)) message.set_method(config::Segmenter::PAPER);
   const auto* descriptor = config::Segmenter::descriptor()->FindFieldByName(field);
   message.GetReflection()->ClearField(&message, descriptor);

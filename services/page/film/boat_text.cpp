@@ -57,7 +57,7 @@ std::string BoatTextOfFolder(const std::filesystem::path& folder, std::string& f
   const auto boat = config::Load<config::Boat>(folder, kBoatFile);
   config::Tracker tracker;
   try {
-    if (exists(symlink_status(folder / kTrackerFile))) tracker = config::Load<config::Tracker>(folder, kTrackerFile);
+    tracker = config::Load<config::Tracker>(folder, kTrackerFile);
   } catch (const config::ConfigError& error) {
     fault = error.what();
   }

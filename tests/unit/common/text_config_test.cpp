@@ -13,6 +13,7 @@
 #include "config/schema/boat.pb.h"
 #include "config/schema/georeferencer.pb.h"
 #include "config/schema/lidar.pb.h"
+#include "config/schema/navigator.pb.h"
 #include "config/schema/recorder.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/tracker.pb.h"
@@ -45,7 +46,10 @@ const std::string kGoodVlp = "source: UDP\nbind_address: \"0.0.0.0\"\ncut_azimut
 TEST(TextConfig, AcceptsWhatTheSchemaAsksFor) { EXPECT_EQ(VlpFaults(kGoodVlp), ""); }
 
 TEST(TextConfig, NamesEveryFactThatIsMissing) {
-  EXPECT_EQ(VlpFaults("data_port: 2368\n"), "f.txtpb:1: source: must be set\nf.txtpb:1: cut_azimuth_deg: must be set");
+  GuardZone zone;
+  EXPECT_EQ(FaultsOf("from_bearing_deg: 0\n", zone), "f.txtpb:1: range_m: must be set");
+  UdpPort port;
+  EXPECT_EQ(FaultsOf("", port), "f.txtpb:1: bind_address: must be set\nf.txtpb:1: port: must be set");
 }
 
 TEST(TextConfig, RefusesUnknownFieldsWithTheirLine) { EXPECT_NE(VlpFaults(kGoodVlp + "\nno_such_field: 1\n").find("f.txtpb:5:"), std::string::npos); }
@@ -201,7 +205,6 @@ TEST(FaultList, TellsTheFaultsOfTwoFilesEachOnce) {
     FAIL() << "nothing was thrown";
   } catch (const ConfigError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "a:1: cut_azimuth_deg: must be set\n"
               "a:2: bind_addres: Message type \"lookout.config.Lidar\" has no field named \"bind_addres\".\n"
               "b:4: data_port: must be at least 1 (is 0)\n"
               "c:1: data_port: must differ");
