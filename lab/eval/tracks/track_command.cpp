@@ -13,6 +13,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
@@ -26,6 +27,9 @@
 #include "lab/eval/tracks/track_run.hpp"
 #include "lab/eval/tracks/track_tables.hpp"
 #include "lab/eval/tracks/track_targets.hpp"
+#include "lab/sim/motion.hpp"
+#include "lab/sim/scene_file.hpp"
+#include "lab/sim/simulation.hpp"
 #include "services/tracker/params.hpp"
 #include "tools/replay/chain.hpp"
 
@@ -42,10 +46,20 @@ ApproachLimits LimitsOf(const fs::path& config_folder) {
   return {tracker.cpa_limit_m(), tracker.look_ahead_s()};
 }
 
+// Where a frame of POSE that begins at a time lies: where the simulated boat is then, its y axis along the bow.
+TrackRun::FramePlacement PlacementBy(const sim::OwnMotion& motion, const config::BoatFacts& boat) {
+  return [motion, boat](std::int64_t utime_us) {
+    const auto own = sim::StateAt(motion, boat.reference_point_above_water_m, 1e-6 * static_cast<double>(utime_us - ToUtimeUs(kSimulationStart)));
+    MapPlacement map{{}, own.heading_rad};
+    sim::MapFrame(boat).Reverse(own.position_map_m.x(), own.position_map_m.y(), 0.0, map.origin[0], map.origin[1], map.origin[2]);
+    return map;
+  };
+}
+
 // One run: `feed` is called with the handler of its datagrams.
 template <typename Feed>
 std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string& scene, Truth& truth, const std::vector<Ablation>& ablations,
-                               const CountReturns& count, const Feed& feed) {
+                               const CountReturns& count, const Feed& feed, const TrackRun::FramePlacement& placement = {}) {
   const auto limits = LimitsOf(config_folder);
   std::optional<TrackRun> run;
   const auto check = [&scene](bool is_used, std::string_view channel) {
@@ -67,6 +81,7 @@ std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string&
     io::ThrowIfStopAsked();
     // The truth knows its objects now.
     if (!run) run.emplace(truth, ablations.empty() ? MakeTrackers() : MultiObjectTrackers(), TrackRun::Returns::kForgotten, limits, names, count);
+    run->SetFramePlacement(placement);
   };
   feed(
       [&](const replay::Datagram& datagram) {
@@ -119,6 +134,10 @@ std::vector<TrackRow> RunScenes(const TrackOptions& options, const std::string& 
   const LeaveOutEvidence evidence(options.weights_folder, options.left_out);
   std::optional<ConfigWithEvidence> with_evidence;
   std::string evidence_of;
+  std::optional<ConfigWithoutLidarNmea> without_earth;
+  if (options.is_without_earth) without_earth.emplace(options.config_folder);
+  const auto boat = config::LoadBoat(options.config_folder);
+  const int nmea_port = sim::ParamsOfConfig(options.config_folder).navigation.nmea_port;
   const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
   double num_done = 0.0;
   ForEachRun(options, [&](const fs::path& file, const std::string& scene, std::uint64_t seed) {
@@ -128,10 +147,16 @@ std::vector<TrackRow> RunScenes(const TrackOptions& options, const std::string& 
       with_evidence.emplace(options.config_folder, evidence.FileOf(scene));
       evidence_of = scene;
     }
-    auto rows = ScoreRun(with_evidence ? with_evidence->path() : options.config_folder, lidar.empty() ? scene : lidar + ": " + scene, truth,
-                         ablations, nullptr, [&](const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan) {
-                           SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram, on_scan, lidar);
-                         });
+    const auto placement = options.is_without_earth ? PlacementBy(sim::LoadScene(file, seed).own_motion, boat) : TrackRun::FramePlacement();
+    const auto feed = [&](const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan) {
+      const auto without_sentences = [&](const replay::Datagram& datagram) {
+        if (datagram.port != nmea_port) on_datagram(datagram);
+      };
+      SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth,
+                  options.is_without_earth ? DatagramHandler(without_sentences) : on_datagram, on_scan, lidar);
+    };
+    const auto& config_folder = with_evidence ? with_evidence->path() : without_earth ? without_earth->path() : options.config_folder;
+    auto rows = ScoreRun(config_folder, lidar.empty() ? scene : lidar + ": " + scene, truth, ablations, nullptr, feed, placement);
     if (events != nullptr) WriteEvents(rows, seed, truth, *events);
     AddTo(runs, std::move(rows));
   });
