@@ -35,12 +35,12 @@ constexpr double kSecondsOfNavigation = 80.0;  // the gap of 60 s, and what is b
 struct Options {
   eval::LogOptions log;
   eval::ComparisonOptions comparison;
-  std::string autoferry_folder;  // empty = none
-  bool has_tracks = false;       // trackers on runs, in place of methods on scans
-  bool has_ablation = false;     // of these
+  std::string autoferry_folder;   // empty = none
+  bool has_tracks = false;        // trackers on runs, in place of methods on scans
+  bool has_ablation = false;      // of these
   bool is_without_earth = false;  // of these
-  bool has_alerts = false;       // alerts on runs, in place of methods on scans
-  bool has_navigation = false;   // own motion and POSE on runs, in place of methods on scans
+  bool has_alerts = false;        // alerts on runs, in place of methods on scans
+  bool has_navigation = false;    // own motion and POSE on runs, in place of methods on scans
   std::vector<std::filesystem::path> captures;
   std::filesystem::path list_file;
   std::optional<double> berth_seconds;

@@ -76,21 +76,22 @@ NamedTable OdometryTable(const NavigationResults& results) {
 }
 
 NamedTable GapTable(const NavigationResults& results, const std::vector<PoseCase>& cases) {
-  NamedTable named{"gap", "POSE in the gap: all sentences but the IMU's are missing",
-                   Table({"scene", "sensors", "odometry", "on the earth", "heading deg 95 %", "position m 95 %", "at the end: known", "heading deg median",
-                          "position m median", "position m 95 %", "in the 95 % ellipse", "jump behind it m", "gated", "renewed", "odometry gated"})};
+  NamedTable named{
+      "gap", "POSE in the gap: all sentences but the IMU's are missing",
+      Table({"scene", "sensors", "odometry", "on the earth", "heading deg 95 %", "position m 95 %", "at the end: known", "heading deg median",
+             "position m median", "position m 95 %", "in the 95 % ellipse", "jump behind it m", "gated", "renewed", "odometry gated"})};
   for (const auto& scene : results.scenes) {
     for (std::size_t i = 0; i < cases.size(); ++i) {
       if (!cases[i].has_gap()) continue;
       const auto& scores = results.poses.at({scene, i});
       const auto num_placed = static_cast<double>(scores.position_errors_m.size());
-      named.table.Add({scene, cases[i].sensors, cases[i].has_odometry ? "with" : "without", Percent(num_placed / static_cast<double>(scores.num_poses)),
-                       Decimals(RadToDeg(PercentileOf(scores.heading_errors_rad, 0.95)), 2), Decimals(PercentileOf(scores.position_errors_m, 0.95), 2),
-                       fmt::format("{} of {}", scores.end_errors_m.size(), scores.jumps_m.size()),
-                       Decimals(RadToDeg(PercentileOf(scores.end_headings_rad, 0.5)), 2), Decimals(PercentileOf(scores.end_errors_m, 0.5), 2),
-                       Decimals(PercentileOf(scores.end_errors_m, 0.95), 2), Percent(static_cast<double>(scores.num_in_ellipse) / num_placed),
-                       Decimals(PercentileOf(scores.jumps_m, 1.0), 2), Number(scores.num_gated), Number(scores.num_renewed),
-                       Number(scores.num_gated_odometry)});
+      named.table.Add(
+          {scene, cases[i].sensors, cases[i].has_odometry ? "with" : "without", Percent(num_placed / static_cast<double>(scores.num_poses)),
+           Decimals(RadToDeg(PercentileOf(scores.heading_errors_rad, 0.95)), 2), Decimals(PercentileOf(scores.position_errors_m, 0.95), 2),
+           fmt::format("{} of {}", scores.end_errors_m.size(), scores.jumps_m.size()),
+           Decimals(RadToDeg(PercentileOf(scores.end_headings_rad, 0.5)), 2), Decimals(PercentileOf(scores.end_errors_m, 0.5), 2),
+           Decimals(PercentileOf(scores.end_errors_m, 0.95), 2), Percent(static_cast<double>(scores.num_in_ellipse) / num_placed),
+           Decimals(PercentileOf(scores.jumps_m, 1.0), 2), Number(scores.num_gated), Number(scores.num_renewed), Number(scores.num_gated_odometry)});
     }
   }
   return named;
@@ -105,10 +106,11 @@ NamedTable WholeTable(const NavigationResults& results, const std::vector<PoseCa
       if (cases[i].has_gap()) continue;
       const auto& scores = results.poses.at({scene, i});
       const auto num_placed = static_cast<double>(scores.position_errors_m.size());
-      named.table.Add({scene, cases[i].sensors, cases[i].has_odometry ? "with" : "without", Percent(num_placed / static_cast<double>(scores.num_poses)),
-                       Decimals(RmsOf(scores.position_errors_m), 3), Decimals(RmsOf(scores.velocity_errors_mps), 3),
-                       Decimals(RadToDeg(RmsOf(scores.heading_errors_rad)), 3), Percent(static_cast<double>(scores.num_in_ellipse) / num_placed),
-                       Number(scores.num_gated), Number(scores.num_renewed), Number(scores.num_gated_odometry)});
+      named.table.Add({scene, cases[i].sensors, cases[i].has_odometry ? "with" : "without",
+                       Percent(num_placed / static_cast<double>(scores.num_poses)), Decimals(RmsOf(scores.position_errors_m), 3),
+                       Decimals(RmsOf(scores.velocity_errors_mps), 3), Decimals(RadToDeg(RmsOf(scores.heading_errors_rad)), 3),
+                       Percent(static_cast<double>(scores.num_in_ellipse) / num_placed), Number(scores.num_gated), Number(scores.num_renewed),
+                       Number(scores.num_gated_odometry)});
     }
   }
   return named;

@@ -8,8 +8,8 @@
 namespace lookout::eval {
 
 struct NavigationOptions : RunOptions {
-  double gap_begin_s = 15.0;         // of the runs with a gap
-  double gap_s = 60.0;               // its length
+  double gap_begin_s = 15.0;          // of the runs with a gap
+  double gap_s = 60.0;                // its length
   std::filesystem::path kept_folder;  // the motions of earlier calls; empty = none
 };
 

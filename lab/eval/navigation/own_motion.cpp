@@ -32,9 +32,10 @@ std::vector<OdometryMessage> Simulated(const fs::path& config_folder, const sim:
   params.seed = seed;
   sim::Simulation simulation(scene, boat, params, nullptr);
   std::vector<OdometryMessage> motions;
-  replay::Chain chain(config_folder, replay::MakeCapturePlan({.only = {"lidar", "odometer"}}), [&](Utime time, std::string_view channel, Bytes bytes) {
-    if (channel == bus::kLidarOdometry.name) motions.push_back({time, bus::Decode<lidar_odometry_t>(bytes).value()});
-  });
+  replay::Chain chain(config_folder, replay::MakeCapturePlan({.only = {"lidar", "odometer"}}),
+                      [&](Utime time, std::string_view channel, Bytes bytes) {
+                        if (channel == bus::kLidarOdometry.name) motions.push_back({time, bus::Decode<lidar_odometry_t>(bytes).value()});
+                      });
   while (const auto datagram = simulation.Next()) chain.OnDatagram({datagram->time, datagram->port, datagram->payload});
   chain.Finish();
   return motions;

@@ -30,14 +30,14 @@ std::vector<OdometryMessage> OdometryOf(const std::filesystem::path& config_fold
 struct OdometryScores {
   std::int64_t num_scans = 0;
   std::int64_t num_known = 0;
-  double way_m = 0.0;          // true, of the known motions
-  double known_s = 0.0;        // their time
-  double drift_m = 0.0;        // of all known motions of a run one after the other
-  double turned_rad = 0.0;     // the same of heading, without sign
-  double forward_m2 = 0.0;     // squares of the errors of each motion
+  double way_m = 0.0;       // true, of the known motions
+  double known_s = 0.0;     // their time
+  double drift_m = 0.0;     // of all known motions of a run one after the other
+  double turned_rad = 0.0;  // the same of heading, without sign
+  double forward_m2 = 0.0;  // squares of the errors of each motion
   double port_m2 = 0.0;
   double turn_rad2 = 0.0;
-  double nees = 0.0;           // squared errors over the stated covariance
+  double nees = 0.0;             // squared errors over the stated covariance
   double longest_wrong_s = 0.0;  // known motions one after the other that are off by more than kWrongM or kWrongTurnRad each
 
   static constexpr double kWrongM = 0.2;

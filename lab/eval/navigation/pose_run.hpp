@@ -31,12 +31,12 @@ struct PoseScores {
   std::vector<double> heading_errors_rad;  // without sign
   std::vector<double> position_errors_m;
   std::vector<double> velocity_errors_mps;
-  std::int64_t num_poses = 0;       // of that time, on the earth or not
-  std::int64_t num_in_ellipse = 0;  // of 95 %
-  std::vector<double> end_errors_m;        // of position at the end of the gap, of each run that knew it
+  std::int64_t num_poses = 0;        // of that time, on the earth or not
+  std::int64_t num_in_ellipse = 0;   // of 95 %
+  std::vector<double> end_errors_m;  // of position at the end of the gap, of each run that knew it
   std::vector<double> end_headings_rad;
-  std::vector<double> jumps_m;             // greatest from one pose to the next behind the gap, beyond the true way
-  std::int64_t num_gated = 0;              // fixes and attitudes that the gate refused
+  std::vector<double> jumps_m;  // greatest from one pose to the next behind the gap, beyond the true way
+  std::int64_t num_gated = 0;   // fixes and attitudes that the gate refused
   std::int64_t num_renewed = 0;
   std::int64_t num_gated_odometry = 0;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "common/core/angles.hpp"
 
@@ -59,6 +60,11 @@ TEST(Odometry, RefusesOtherLines) {
   EXPECT_FALSE(ParseOdometry("$PLKODO,1,2,K*61"));
   auto motion = Straight(kStart, 0.1);
   motion.covariance(0, 0) = -1.0;
+  EXPECT_FALSE(ParseOdometry(ToSentence(motion)));
+  // Each pair may be correlated so, not all three.
+  motion = Straight(kStart, 0.1);
+  motion.covariance = Eigen::Vector3d(1e-2, 1e-2, 1e-2).asDiagonal();
+  for (const auto& [row, column] : {std::pair{0, 1}, {0, 2}, {1, 2}}) motion.covariance(row, column) = motion.covariance(column, row) = -0.8e-2;
   EXPECT_FALSE(ParseOdometry(ToSentence(motion)));
   motion = Straight(kStart, 200.0);
   EXPECT_FALSE(ParseOdometry(ToSentence(motion)));

@@ -74,7 +74,7 @@ constexpr double kCalmMaxVariance = 0.05 * 0.05;
 constexpr double kCalmMaxRateRadps = DegToRad(2.0);
 
 // Least deviations of a motion by the lidar, of each direction and of the turn; those stated are of the fit alone.
-constexpr double kMotionSdM = 0.02;
+constexpr double kMotionSdM = 0.03;
 constexpr double kMotionSdShare = 0.02;  // of the way
 constexpr double kMotionTurnSdRad = DegToRad(0.02);
 constexpr double kMotionTurnSdShare = 0.01;  // of the turn
@@ -154,6 +154,7 @@ bool IsAttitudeGivenUp(const Eigen::Vector3d& angles_rad, const Eigen::Vector3d&
   if (!fault) return false;
   ++counts.num_renewed;
   if (fault.is_led_away && state.aiding.has_gyro) RefuseImu(params.tilt_sd_rad, state);
+  RefuseOdometry(state);
   return true;
 }
 
@@ -219,6 +220,7 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     ++counts.num_renewed;
     ForgetPlace(state);
     if (fault.is_led_away && state.aiding.is_strapdown) RefuseImu(params.tilt_sd_rad, state);
+    if (fault) RefuseOdometry(state);
   }
   if (!is_accepted) {
     // The fix alone decides the place, and its velocity the velocity.
@@ -414,6 +416,7 @@ Innovation<3> MotionOf(const OdometryMotion& motion, const FilterParams& params,
   const double way_sd_m = Hypot(kMotionSdM, kMotionSdShare * motion.displacement_m.norm());
   const double turn_sd_rad = Hypot(kMotionTurnSdRad, kMotionTurnSdShare * motion.turn_rad);
   innovation.noise = motion.covariance;
+  innovation.noise.diagonal() *= kInflatedVariance;
   innovation.noise.diagonal() += Eigen::Vector3d(way_sd_m, way_sd_m, turn_sd_rad).cwiseAbs2();
   return innovation;
 }
@@ -430,8 +433,7 @@ Innovation<1> TurnOf(const Innovation<3>& motion) {
 void ApplyMotion(const OdometryMotion& motion, const FilterParams& params, State& state, GateCounts& counts) {
   const auto innovation = MotionOf(motion, params, state);
   const bool has_position = state.aiding.scan_place.has_position && state.aiding.has_position;
-  const bool is_accepted =
-      has_position ? Correct(innovation, false, state).is_accepted : Correct(TurnOf(innovation), false, state).is_accepted;
+  const bool is_accepted = has_position ? Correct(innovation, false, state).is_accepted : Correct(TurnOf(innovation), false, state).is_accepted;
   if (is_accepted) {
     state.aiding.odometry.Use(state.time);
     state.aiding.odometry_contradicts_since.reset();
@@ -446,7 +448,7 @@ void ApplyMotion(const OdometryMotion& motion, const FilterParams& params, State
 void Apply(const OdometryMotion& motion, const FilterParams& params, State& state, GateCounts& counts) {
   const auto& from = state.aiding.scan_place;
   const bool has_begin = from.time == motion.begin && from.has_heading && state.aiding.has_heading;
-  if (motion.is_known && has_begin) ApplyMotion(motion, params, state, counts);
+  if (motion.is_known && has_begin && !IsOdometryRefused(state)) ApplyMotion(motion, params, state, counts);
   SetScanPlace(params, state);
 }
 

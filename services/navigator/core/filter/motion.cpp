@@ -187,8 +187,8 @@ void ForgetOld(const FilterParams& params, State& state) {
     const auto max_age = state.aiding.heading_source == HeadingSource::kCourse ? params.max_position_age : params.max_attitude_age;
     // Gyroscopes and the lidar tell the turn.
     const bool is_turn_known = state.aiding.has_gyro || state.aiding.odometry.IsWithin(state.time, params.max_attitude_age);
-    const bool is_carried = is_turn_known ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad
-                                          : source.IsWithin(state.time, max_age);
+    const bool is_carried =
+        is_turn_known ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad : source.IsWithin(state.time, max_age);
     if (!is_carried && !source.IsWithin(state.time, params.max_attitude_age)) {
       // Position is that of the antenna again.
       if (state.aiding.has_position) ShiftPosition(state.nominal.R_level_vessel() * AntennaLever(params), state);

@@ -402,7 +402,8 @@ Pose PoseFilter::At(Utime time) {
   const auto& aiding = state.aiding;
   const bool is_carried = (aiding.has_position && aiding.fix.IsStoppedAt(time)) || (aiding.has_heading && aiding.heading().IsStoppedAt(time));
   is_carried_by_lidar_ = is_carried && aiding.odometry.IsWithin(time, kMotionAge);
-  contradicts_lidar_ = aiding.odometry_contradicts_since && time - *aiding.odometry_contradicts_since >= kContradiction;
+  const bool contradicts = aiding.odometry_contradicts_since && time - *aiding.odometry_contradicts_since >= kContradiction;
+  contradicts_lidar_ = contradicts || IsOdometryRefused(state);
   NameDoubted(time);
   return ToPose(state, datum_, map_ ? &*map_ : nullptr, params_);
 }

@@ -19,9 +19,11 @@ constexpr double kUnknownRateSdRadps = 0.2;
 constexpr double kUnknownAccelerationSdMps2 = 0.5;
 constexpr double kUnknownLevelSdM = 1.0;
 
-// How long an IMU is not used that led the state astray.
+// How long an IMU, or the lidar's motion, is not used that led the state astray.
 constexpr double kFirstRefusalS = 10.0;
 constexpr double kMaxRefusalS = 600.0;
+// A motion that was used within this time has led the state.
+constexpr std::chrono::seconds kLedByLidar{5};
 // A boat without an IMU goes up and down by so much.
 constexpr double kUpSdMps = 0.5;
 
@@ -69,6 +71,15 @@ void RefuseImu(double tilt_sd_rad, State& state) {
   state.covariance.diagonal().segment<2>(kRotation).array() += tilt_sd_rad * tilt_sd_rad;
   BeginMeanForce(state);
 }
+
+void RefuseOdometry(State& state) {
+  auto& aiding = state.aiding;
+  if (!aiding.odometry.IsWithin(state.time, kLedByLidar)) return;
+  aiding.odometry_refusal_s = std::clamp(2.0 * aiding.odometry_refusal_s, kFirstRefusalS, kMaxRefusalS);
+  aiding.odometry_refused_until = state.time + std::chrono::microseconds(std::llround(1e6 * aiding.odometry_refusal_s));
+}
+
+bool IsOdometryRefused(const State& state) { return state.aiding.odometry_refused_until && state.time < *state.aiding.odometry_refused_until; }
 
 void BeginMeanForce(State& state) {
   state.aiding.num_forces = 0;

@@ -102,8 +102,8 @@ struct NominalState {
   Eigen::Matrix3d R_level_vessel() const { return q_level_vessel.toRotationMatrix(); }
 };
 
-/// The place from which the next motion of the odometer goes. It is a copy of the state at the end of a scan, with its covariance (stochastic cloning:
-/// Roumeliotis and Burdick, ICRA 2002), so that a motion is compared with what the state itself has done since.
+/// The place from which the next motion of the odometer goes. It is a copy of the state at the end of a scan, with its covariance (stochastic
+/// cloning: Roumeliotis and Burdick, ICRA 2002), so that a motion is compared with what the state itself has done since.
 struct ScanPlace {
   std::optional<Utime> time;  // nullopt: there is none, or the state was set anew since
   bool has_position = false;
@@ -143,6 +143,9 @@ struct AidingStatus {
   ScanPlace scan_place;
   UseTimes odometry;                                // motions that agreed with the state
   std::optional<Utime> odometry_contradicts_since;  // each since then was refused
+  // Fixes or headings contradicted a state that went by the lidar: its motions are not used until then, and next time for so long.
+  std::optional<Utime> odometry_refused_until;
+  double odometry_refusal_s = 0.0;
 
   Refusals fix_refusals;
   Refusals heading_refusals;
@@ -183,6 +186,11 @@ State FreshState(Utime time, double tilt_sd_rad);
 /// The IMU led the state astray: its effects are removed, and it is not used for a while, twice as long each time.
 void RefuseImu(double tilt_sd_rad, State& state);
 bool IsImuRefused(const State& state);
+
+/// The state was wrong for long though the lidar told its way: its motions are not used for a while, twice as long each time. Nothing where they were
+/// not used.
+void RefuseOdometry(State& state);
+bool IsOdometryRefused(const State& state);
 
 /// The next specific force is the first of a new mean.
 void BeginMeanForce(State& state);
