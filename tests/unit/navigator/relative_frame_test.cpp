@@ -211,7 +211,7 @@ TEST(RelativeFrame, AMomentOnTheEarthIsSoonOver) {
   EXPECT_NE(frame.At(Unknown(kStart + 9s), kTiltSdRad).status, PoseStatus::kUnknown);
   // As long as it had been there: gaps within do not count.
   frame.At(OnEarth(kStart + 20s), kTiltSdRad);
-  frame.At(Unknown(kStart + 25s), kTiltSdRad);
+  frame.At(Unknown(kStart + 22s), kTiltSdRad);
   frame.At(OnEarth(kStart + 30s), kTiltSdRad);
   EXPECT_EQ(frame.At(Unknown(kStart + 39s), kTiltSdRad).status, PoseStatus::kUnknown);
   EXPECT_NE(frame.At(Unknown(kStart + 40s), kTiltSdRad).status, PoseStatus::kUnknown);
