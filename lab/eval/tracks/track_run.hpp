@@ -53,8 +53,8 @@ class TrackRun {
   TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns, const ApproachLimits& limits = {},
            const std::vector<std::string>& variants = {}, CountReturns count = nullptr);
 
-  /// Where a relative frame of POSE lies, by the time at which it began. Without it scans in such a frame do not count.
-  using FramePlacement = std::function<MapPlacement(std::int64_t begin_utime_us)>;
+  /// Where a relative frame of POSE lies, by its number; nullopt: not known yet. Without it scans in such a frame do not count.
+  using FramePlacement = std::function<std::optional<MapPlacement>(double number)>;
   void SetFramePlacement(FramePlacement placement) { frame_placement_ = std::move(placement); }
 
   /// LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS and ALERTS; others are left out. @return false where the message cannot be used
@@ -118,7 +118,7 @@ class TrackRun {
   MultiObjectTrackers trackers_;
   messages::ScanCollector collector_;
   FramePlacement frame_placement_;
-  MapOrigin origin_{};  // as OBSTACLES have it
+  MapOrigin origin_{};  // of track_truth_
   std::unique_ptr<TrackTruth> track_truth_;
   std::vector<TrueScan> truth_scans_;
   std::vector<Said> said_;                       // of trackers_
