@@ -16,6 +16,7 @@
 #include "common/runtime/version.hpp"
 #include "lab/eval/comparison_command.hpp"
 #include "lab/eval/log_command.hpp"
+#include "lab/eval/navigation/navigation_command.hpp"
 #include "lab/eval/sensor_command.hpp"
 #include "lab/eval/tracks/alert_command.hpp"
 #include "lab/eval/tracks/track_autoferry.hpp"
@@ -29,14 +30,17 @@ using namespace lookout;
 constexpr int kExitUsage = 2;
 constexpr double kSecondsOfTracks = 20.0;  // of each scene and seed
 constexpr double kSecondsOfAlerts = 60.0;
+constexpr double kSecondsOfNavigation = 80.0;  // the gap of 60 s, and what is before and behind it
 
 struct Options {
   eval::LogOptions log;
   eval::ComparisonOptions comparison;
-  std::string autoferry_folder;  // empty = none
-  bool has_tracks = false;       // trackers on runs, in place of methods on scans
-  bool has_ablation = false;     // of these
-  bool has_alerts = false;       // alerts on runs, in place of methods on scans
+  std::string autoferry_folder;   // empty = none
+  bool has_tracks = false;        // trackers on runs, in place of methods on scans
+  bool has_ablation = false;      // of these
+  bool is_without_earth = false;  // of these
+  bool has_alerts = false;        // alerts on runs, in place of methods on scans
+  bool has_navigation = false;    // own motion and POSE on runs, in place of methods on scans
   std::vector<std::filesystem::path> captures;
   std::filesystem::path list_file;
   std::optional<double> berth_seconds;
@@ -124,8 +128,11 @@ Options ParseOptions(int argc, char** argv) {
                  "with --alerts: of each seed of scenes in which the own boat lies still (default: --seconds)")
       ->check(CLI::Range(1.0, 36'000.0))
       ->needs(alerts);
-  app.add_option("--keep", options.kept_folder, "with --alerts: keep there what the tracker reads in simulated runs, and use it the next time")
-      ->needs(alerts);
+  auto* navigation =
+      needs_config(app.add_flag("--navigation", options.has_navigation, "own motion by the lidar and POSE with it, in place of methods on scans"));
+  navigation->excludes(tracks)->excludes(alerts);
+  app.add_option("--keep", options.kept_folder,
+                 "with --alerts: keep there what the tracker reads in simulated runs, and use it the next time; with --navigation: LIDAR_ODOMETRY");
   app.add_flag("--long", options.are_figures_long, "with --alerts and --blocks: fill the blocks of long runs (long_alerts_...)")->needs(alerts);
   app.add_option("--jobs", options.num_jobs, "with --alerts: runs at once; the figures are the same")
       ->check(CLI::Range(1, 256))
@@ -134,6 +141,11 @@ Options ParseOptions(int argc, char** argv) {
   for (const char* other : {"--lost", "--tracks"}) alerts->excludes(app.get_option(other));
   auto* ablation = app.add_flag("--ablation", options.has_ablation, "with --tracks: the boat's tracker without each of its parts, in one table");
   ablation->needs(tracks)->excludes(left_out);
+  app.add_flag("--without-earth", options.is_without_earth,
+               "with --tracks and --scenes: boats have neither receiver nor compass, so tracks are in the relative frame of POSE")
+      ->needs(tracks)
+      ->excludes(left_out)
+      ->excludes(app.get_option("--captures"));
   alerts->excludes(left_out);
   autoferry->excludes(left_out);
   auto* lidar = app.get_option("--lidar");
@@ -143,14 +155,18 @@ Options ParseOptions(int argc, char** argv) {
   for (const char* other : {"--methods", "--sweep", "--test", "--points", "--html", "--pictures"}) {
     tracks->excludes(app.get_option(other));
     alerts->excludes(app.get_option(other));
+    navigation->excludes(app.get_option(other));
     autoferry->excludes(app.get_option(other));
   }
+  for (const char* other : {"--captures", "--lost", "--blocks"}) navigation->excludes(app.get_option(other));
   for (const char* other : {"--in", "--scenes", "--captures", "--tracks", "--alerts", "--csv", "--lost"}) autoferry->excludes(app.get_option(other));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
     if (log.log_file.empty() && comparison.config_folder.empty() && options.autoferry_folder.empty())
       throw CLI::RequiredError("one of --in LOG, --config DIR, --autoferry DIR");
+    if (!options.kept_folder.empty() && !options.has_alerts && !options.has_navigation)
+      throw CLI::RequiredError("--alerts or --navigation, for --keep");
     if (!options.has_alerts && !options.has_tracks) {
       if (options.captures.size() > 1) throw CLI::ValidationError("--captures", "several folders are for --tracks and --alerts alone");
       if (!options.captures.empty()) comparison.captures = options.captures.front();
@@ -167,6 +183,7 @@ Options ParseOptions(int argc, char** argv) {
     }
     if (options.has_tracks && seconds->count() == 0) comparison.seconds = kSecondsOfTracks;
     if (options.has_alerts && seconds->count() == 0) comparison.seconds = kSecondsOfAlerts;
+    if (options.has_navigation && seconds->count() == 0) comparison.seconds = kSecondsOfNavigation;
     if (comparison.lidars == std::vector<std::string>{"all"}) comparison.lidars = sim::HeadNames();
     eval::CheckLidars(comparison.lidars);
   } catch (const CLI::ParseError& error) {
@@ -197,9 +214,15 @@ int main(int argc, char** argv) try {
     return eval::EvaluateAlerts({RunsOf(comparison), options.berth_seconds.value_or(comparison.seconds), options.captures, options.num_jobs,
                                  options.kept_folder, options.list_file, options.are_figures_long});
   }
+  if (options.has_navigation) {
+    eval::NavigationOptions navigation;
+    static_cast<eval::RunOptions&>(navigation) = RunsOf(comparison);
+    navigation.kept_folder = options.kept_folder;
+    return eval::EvaluateNavigation(navigation);
+  }
   if (options.has_tracks) {
-    return eval::EvaluateTracks(
-        {RunsOf(comparison), options.captures, comparison.lost_file, options.has_ablation, eval::LeftOutOf(comparison), comparison.weights_folder});
+    return eval::EvaluateTracks({RunsOf(comparison), options.captures, comparison.lost_file, options.has_ablation, eval::LeftOutOf(comparison),
+                                 options.is_without_earth, comparison.weights_folder});
   }
   return comparison.lidars.empty() ? eval::CompareMethods(comparison) : eval::CompareSensors(comparison);
 } catch (const std::invalid_argument& error) {

@@ -98,7 +98,6 @@ void Service::OnLidarOdometry(const lidar_odometry_t& message) {
     ++counts_["lidar_odometry_bad"];
     return;
   }
-  // Where the earth is known it would only fill the log.
   if (navigator_.WantsOdometry()) PublishAndConsume(sequencer_.OnOdometry(motion->end, ToSentence(*motion)));
 }
 
@@ -143,6 +142,8 @@ HealthReport Service::Report() const {
   const auto add = [&report](const std::string& reason) { report.Degrade(reason, ", "); };
   const auto& filter = navigator_.filter();
   if (!filter.stopped().empty()) add(filter.stopped());
+  if (filter.is_carried_by_lidar()) add("carried on by the lidar's own motion meanwhile");
+  if (filter.contradicts_lidar()) add("own motion by the lidar is not used: it contradicts the other sensors");
   if (!filter.doubted().empty()) add(filter.doubted());
   if (!filter.last_fix_arrival()) add("no position fix yet");
   if (!pose || (pose->heading_source == HeadingSource::kNone && !filter.has_had_heading())) add("no heading");

@@ -159,6 +159,19 @@ void WritePositionPackets(const Folder& folder, const Folder& scripts) {
 
 // --- NMEA 0183 ---
 
+void WriteMotions(const Folder& folder) {
+  using navigator::Line;
+  const std::string covariance = "0.000010000000,0.000000000000,0.000000000000,0.000010000000,0.000000001000,0.000000100000";
+  const std::string known = Line("PLKODO,1780315200000000,1780315200100000,K,0.200000,-0.010000,0.001000000," + covariance);
+  const std::string unknown = Line("PLKODO,1780315200100000,1780315200200000,U");
+  const std::string next = Line("PLKODO,1780315200200000,1780315200300000,K,0.210000,0.000000,-0.002000000," + covariance);
+  folder.Write("known", known + "\r\n");
+  folder.Write("unknown", unknown + "\r\n");
+  std::string many;
+  for (int i = 0; i < 20; ++i) many += known + "\r\n" + unknown + "\r\n" + next + "\r\n";
+  folder.Write("many", many);
+}
+
 void WriteSentences(const Folder& folder) {
   using namespace navigator;
   const auto noon = NoonPlus(0.0);
@@ -446,6 +459,7 @@ int main(int argc, char** argv) try {
   WriteVelodynePackets(Folder(root / "fuzz_velodyne"));
   WriteOuster(Folder(root / "fuzz_ouster"));
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
+  WriteMotions(Folder(root / "fuzz_odometry_line"));
   WriteAnswers(Folder(root / "fuzz_plotter"));
   WriteTypedAnswers(Folder(root / "fuzz_setup"));
   WriteCaptures(Folder(root / "fuzz_capture"));

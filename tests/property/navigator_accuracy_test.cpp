@@ -95,6 +95,46 @@ TEST_P(SimulatedScene, IsKnownToFiveCentimetresAndATenthOfADegree) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SimulatedScene, ::testing::Values("turning", "waves", "crossing"), [](const auto& scene) { return scene.param; });
 
+// Where nothing is missing the lidar's motion makes POSE no worse, whatever the sensors are.
+TEST_P(SimulatedScene, IsNoWorseWithTheMotionOfTheLidar) {
+  for (const auto& navigation : {sim::NavigationParams{}, sim::StandaloneNavigation()}) {
+    Accuracy without;
+    Accuracy with;
+    for (int seed = 1; seed <= NumSeeds(); ++seed) {
+      without.Add(Simulate(GetParam(), static_cast<std::uint64_t>(seed), 20.0, {}, navigation));
+      const auto run = Simulate(GetParam(), static_cast<std::uint64_t>(seed), 20.0, {}, navigation, true);
+      with.Add(run);
+      EXPECT_LE(run.Count("gated_odometry"), 1);
+      EXPECT_EQ(run.Count("renewed_position"), 0);
+      EXPECT_GT(run.Count("odometry_used"), 150);
+    }
+    without.Print("without");
+    with.Print("with");
+    constexpr double kChance = 1.03;
+    EXPECT_LT(with.position_m2.rms(), kChance * without.position_m2.rms());
+    EXPECT_LT(with.velocity_mps2.rms(), kChance * without.velocity_mps2.rms());
+    EXPECT_LT(with.heading_rad2.rms(), kChance * without.heading_rad2.rms());
+    EXPECT_LT(with.heading_nees.mean(), 1.3);
+    EXPECT_GT(with.in_ellipse.mean(), 0.93);
+  }
+}
+
+TEST(GnssGap, IsCarriedOnByTheLidarWithoutCompassAndImu) {
+  for (int seed = 1; seed <= NumSeeds(); ++seed) {
+    const auto run =
+        Simulate("turning", static_cast<std::uint64_t>(seed), 40.0, {"gnss_gap:12:35", "imu_stop:12:35", "frozen_heading:12:35"}, {}, true);
+    for (const auto& compared : run.poses) {
+      if (compared.time_s < kSettleS) continue;
+      ASSERT_TRUE(compared.is_placed()) << compared.time_s;
+      EXPECT_LT(compared.error_m.norm(), 0.5) << compared.time_s;
+    }
+    EXPECT_EQ(run.Count("renewed_position"), 0);
+    const auto named =
+        std::ranges::find_if(run.reasons, [](const auto& reason) { return reason.second.find("carried on by the lidar") != std::string::npos; });
+    EXPECT_NE(named, run.reasons.end());
+  }
+}
+
 TEST(GnssGap, IsCarriedOnByTheImu) {
   std::vector<double> drifts_m;
   std::vector<double> sds_m;

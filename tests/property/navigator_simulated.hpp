@@ -4,6 +4,7 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "common/core/angles.hpp"
 #include "lab/sim/motion.hpp"
 #include "lab/sim/navigation.hpp"
+#include "lookout/lidar_odometry_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
 #include "tests/support/files.hpp"
@@ -55,8 +57,47 @@ struct SimulatedRun {
   }
 };
 
+/// Own motion by the lidar as it would be told, with errors that are independent from scan to scan.
+class DrawnOdometry {
+ public:
+  DrawnOdometry(const sim::OwnMotion& motion, double reference_point_above_water_m, std::uint64_t seed)
+      : motion_(motion), above_water_m_(reference_point_above_water_m), random_(seed) {}
+
+  // Scan `number` ends at number / 10 s; its motion comes 50 ms later.
+  lidar_odometry_t Next() {
+    using namespace std::chrono_literals;
+    const double begin_s = 0.1 * number_++;
+    const auto from = sim::StateAt(motion_, above_water_m_, begin_s);
+    const auto to = sim::StateAt(motion_, above_water_m_, begin_s + 0.1);
+    const Eigen::Vector2d way_m = (to.position_map_m - from.position_map_m).head<2>();
+    const double sin = std::sin(from.heading_rad);
+    const double cos = std::cos(from.heading_rad);
+    lidar_odometry_t message{};
+    message.begin_utime_us = ToUtimeUs(kSimulatedStart) + std::llround(begin_s * 1e6);
+    message.utime_us = message.begin_utime_us + 100'000;
+    message.displacement_m[0] = sin * way_m.x() + cos * way_m.y() + kWaySdM * normal_(random_);
+    message.displacement_m[1] = -cos * way_m.x() + sin * way_m.y() + kWaySdM * normal_(random_);
+    message.turn_rad = WrapToPi(to.heading_rad - from.heading_rad) + kTurnSdRad * normal_(random_);
+    message.covariance[0][0] = message.covariance[1][1] = kWaySdM * kWaySdM;
+    message.covariance[2][2] = kTurnSdRad * kTurnSdRad;
+    return message;
+  }
+  Utime next_arrival() const { return kSimulatedStart + std::chrono::milliseconds(100 * (number_ + 1) + 50); }
+
+ private:
+  // Those of the lake (services/odometer/README.md), the worst of its scenes.
+  static constexpr double kWaySdM = 0.015;
+  static constexpr double kTurnSdRad = DegToRad(0.017);
+
+  sim::OwnMotion motion_;
+  double above_water_m_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  int number_ = 0;
+};
+
 inline SimulatedRun Simulate(const std::string& scene_name, std::uint64_t seed, double seconds, const std::vector<std::string>& faults = {},
-                             const sim::NavigationParams& navigation_params = {}) {
+                             const sim::NavigationParams& navigation_params = {}, bool has_odometry = false) {
   using namespace std::chrono_literals;
   const auto boat = config::LoadBoat(kDemo);
   const auto scene = sim::MakeScene(scene_name, seed);
@@ -86,6 +127,7 @@ inline SimulatedRun Simulate(const std::string& scene_name, std::uint64_t seed, 
     run.poses.push_back(compared);
   });
 
+  DrawnOdometry odometry(scene.own_motion, boat.reference_point_above_water_m, seed);
   std::vector<sim::Datagram> waiting;
   double next_report_s = 1.0;
   while (navigation.next_time() < kSimulatedStart + std::chrono::microseconds(std::llround(seconds * 1e6))) {
@@ -94,6 +136,10 @@ inline SimulatedRun Simulate(const std::string& scene_name, std::uint64_t seed, 
     std::ranges::stable_sort(waiting, {}, &sim::Datagram::time);
     auto datagram = waiting.begin();
     for (; datagram != waiting.end() && datagram->time <= now; ++datagram) {
+      for (; has_odometry && odometry.next_arrival() <= datagram->time;) {
+        service.AdvanceTo(odometry.next_arrival());
+        support::Send(bus, bus::kLidarOdometry, odometry.Next());
+      }
       service.AdvanceTo(datagram->time);
       if (datagram->port == navigation_params.nmea_port) service.OnDatagram(datagram->time, datagram->payload);
       support::HandleAll(bus);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -13,7 +15,9 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
+#include "common/core/angles.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
@@ -26,6 +30,10 @@
 #include "lab/eval/tracks/track_run.hpp"
 #include "lab/eval/tracks/track_tables.hpp"
 #include "lab/eval/tracks/track_targets.hpp"
+#include "lab/sim/motion.hpp"
+#include "lab/sim/scene_file.hpp"
+#include "lab/sim/simulation.hpp"
+#include "lookout/pose_t.hpp"
 #include "services/tracker/params.hpp"
 #include "tools/replay/chain.hpp"
 
@@ -42,10 +50,38 @@ ApproachLimits LimitsOf(const fs::path& config_folder) {
   return {tracker.cpa_limit_m(), tracker.look_ahead_s()};
 }
 
+// Lays the relative frames of POSE on the earth: by the first pose of each whose way is known, and the true place then.
+class FrameFinder {
+ public:
+  FrameFinder(const sim::OwnMotion& motion, const config::BoatFacts& boat) : motion_(motion), boat_(boat) {}
+
+  void OnPose(const pose_t& pose) {
+    if (pose.status != pose_t::STATUS_RELATIVE || placements_.contains(pose.datum_ellipsoid_height_m)) return;
+    const auto own =
+        sim::StateAt(motion_, boat_.reference_point_above_water_m, 1e-6 * static_cast<double>(pose.utime_us - ToUtimeUs(kSimulationStart)));
+    MapPlacement map{{}, WrapTo2Pi(own.heading_rad - pose.heading_rad)};
+    const double sin = std::sin(map.y_axis_rad);
+    const double cos = std::cos(map.y_axis_rad);
+    const auto& p_m = pose.position_map_m;
+    sim::MapFrame(boat_).Reverse(own.position_map_m.x() - (cos * p_m[0] + sin * p_m[1]), own.position_map_m.y() - (-sin * p_m[0] + cos * p_m[1]), 0.0,
+                                 map.origin[0], map.origin[1], map.origin[2]);
+    placements_[pose.datum_ellipsoid_height_m] = map;
+  }
+  std::optional<MapPlacement> Find(double number) const {
+    const auto found = placements_.find(number);
+    return found == placements_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  sim::OwnMotion motion_;
+  config::BoatFacts boat_;
+  std::map<double, MapPlacement> placements_;  // by number of the frame
+};
+
 // One run: `feed` is called with the handler of its datagrams.
 template <typename Feed>
 std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string& scene, Truth& truth, const std::vector<Ablation>& ablations,
-                               const CountReturns& count, const Feed& feed) {
+                               const CountReturns& count, const Feed& feed, FrameFinder* frames = nullptr) {
   const auto limits = LimitsOf(config_folder);
   std::optional<TrackRun> run;
   const auto check = [&scene](bool is_used, std::string_view channel) {
@@ -60,6 +96,7 @@ std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string&
         [&run, &check, name = ablation.name](Bytes bytes) { check(run->AddTracksOf(name, bytes), kTracksChannel); }));
   }
   replay::Chain chain(config_folder, {}, [&](Utime, std::string_view channel, Bytes bytes) {
+    if (frames != nullptr && channel == bus::kPose.name) frames->OnPose(bus::Decode<pose_t>(bytes).value());
     check(run->Add(channel, bytes), channel);
     for (const auto& one : ablated) one->Add(channel, bytes);
   });
@@ -67,6 +104,7 @@ std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string&
     io::ThrowIfStopAsked();
     // The truth knows its objects now.
     if (!run) run.emplace(truth, ablations.empty() ? MakeTrackers() : MultiObjectTrackers(), TrackRun::Returns::kForgotten, limits, names, count);
+    if (frames != nullptr) run->SetFramePlacement([frames](double number) { return frames->Find(number); });
   };
   feed(
       [&](const replay::Datagram& datagram) {
@@ -119,6 +157,10 @@ std::vector<TrackRow> RunScenes(const TrackOptions& options, const std::string& 
   const LeaveOutEvidence evidence(options.weights_folder, options.left_out);
   std::optional<ConfigWithEvidence> with_evidence;
   std::string evidence_of;
+  std::optional<ConfigWithoutLidarNmea> without_earth;
+  if (options.is_without_earth) without_earth.emplace(options.config_folder);
+  const auto boat = config::LoadBoat(options.config_folder);
+  const int nmea_port = sim::ParamsOfConfig(options.config_folder).navigation.nmea_port;
   const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
   double num_done = 0.0;
   ForEachRun(options, [&](const fs::path& file, const std::string& scene, std::uint64_t seed) {
@@ -128,10 +170,17 @@ std::vector<TrackRow> RunScenes(const TrackOptions& options, const std::string& 
       with_evidence.emplace(options.config_folder, evidence.FileOf(scene));
       evidence_of = scene;
     }
-    auto rows = ScoreRun(with_evidence ? with_evidence->path() : options.config_folder, lidar.empty() ? scene : lidar + ": " + scene, truth,
-                         ablations, nullptr, [&](const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan) {
-                           SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram, on_scan, lidar);
-                         });
+    std::optional<FrameFinder> frames;
+    if (options.is_without_earth) frames.emplace(sim::LoadScene(file, seed).own_motion, boat);
+    const auto feed = [&](const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan) {
+      const auto without_sentences = [&](const replay::Datagram& datagram) {
+        if (datagram.port != nmea_port) on_datagram(datagram);
+      };
+      SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth,
+                  options.is_without_earth ? DatagramHandler(without_sentences) : on_datagram, on_scan, lidar);
+    };
+    const auto& config_folder = with_evidence ? with_evidence->path() : without_earth ? without_earth->path() : options.config_folder;
+    auto rows = ScoreRun(config_folder, lidar.empty() ? scene : lidar + ": " + scene, truth, ablations, nullptr, feed, frames ? &*frames : nullptr);
     if (events != nullptr) WriteEvents(rows, seed, truth, *events);
     AddTo(runs, std::move(rows));
   });

@@ -19,6 +19,7 @@ struct TrackOptions : RunOptions {
   std::filesystem::path lost_file;       // causes of a lower MOTA, a row of CSV for each scan and thing or track; empty = none
   bool has_ablation = false;             // the boat's tracker without each of its parts beside it, in one table
   std::set<std::string> left_out;        // families whose runs have evidence that was fitted without them (LeaveOutEvidence); one table of labels
+  bool is_without_earth = false;         // simulated boats have neither receiver nor compass: tracks are in POSE's relative frame
   std::filesystem::path weights_folder;  // of that evidence
 };
 

@@ -150,11 +150,13 @@ void TrackRun::OnScan(const messages::ScanMessages& scan) {
   std::vector<std::vector<TrackState>> tracks;
   for (const auto& tracker : trackers_) tracks.push_back(tracker->Update(scan));
   const MapOrigin origin{head.datum_latitude_deg, head.datum_longitude_deg, head.datum_ellipsoid_height_m};
-  const bool is_placed = std::ranges::all_of(origin, [](double value) { return std::isfinite(value); });
-  if (!is_placed || messages::IsCut(head.scan_flags) || (truth_scans_.empty() && !IsPlacedAsAWhole(scan))) return;
-  if (!track_truth_ || origin != origin_) {
-    origin_ = origin;
-    track_truth_ = std::make_unique<TrackTruth>(truth_, origin);
+  const bool is_on_earth = std::ranges::all_of(origin, [](double value) { return std::isfinite(value); });
+  const bool is_relative = std::isnan(origin[0]) && std::isfinite(origin[2]) && frame_placement_;
+  const auto map = is_on_earth ? MapPlacement{origin} : is_relative ? frame_placement_(origin[2]) : std::nullopt;
+  if (!map || messages::IsCut(head.scan_flags) || (truth_scans_.empty() && !IsPlacedAsAWhole(scan))) return;
+  if (!track_truth_ || map->origin != origin_) {
+    origin_ = map->origin;
+    track_truth_ = std::make_unique<TrackTruth>(truth_, *map);
   }
   Waiting waiting{.index = truth_scans_.size(),
                   .returns = count_ ? std::vector<LabelledReturn>() : Join(scan),

@@ -53,6 +53,10 @@ class TrackRun {
   TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns, const ApproachLimits& limits = {},
            const std::vector<std::string>& variants = {}, CountReturns count = nullptr);
 
+  /// Where a relative frame of POSE lies, by its number; nullopt: not known yet. Without it scans in such a frame do not count.
+  using FramePlacement = std::function<std::optional<MapPlacement>(double number)>;
+  void SetFramePlacement(FramePlacement placement) { frame_placement_ = std::move(placement); }
+
   /// LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS and ALERTS; others are left out. @return false where the message cannot be used
   bool Add(std::string_view channel, Bytes bytes);
   /// TRACKS of one of the variants, after the OBSTACLES of its scan. @return false where the message cannot be used
@@ -113,7 +117,8 @@ class TrackRun {
   std::map<std::int32_t, data::ScanObject> objects_;
   MultiObjectTrackers trackers_;
   messages::ScanCollector collector_;
-  MapOrigin origin_{};
+  FramePlacement frame_placement_;
+  MapOrigin origin_{};  // of track_truth_
   std::unique_ptr<TrackTruth> track_truth_;
   std::vector<TrueScan> truth_scans_;
   std::vector<Said> said_;                       // of trackers_

@@ -19,6 +19,7 @@
 #include "common/core/angles.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "config/schema/navigator.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "lab/data/csv_file.hpp"
 #include "lab/data/scan_message.hpp"
@@ -34,8 +35,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// As lookout-sim begins: any date serves, as long as it is always the same.
-constexpr Utime kStart{std::chrono::microseconds(1'781'532'600'000'000)};
 constexpr std::int64_t kOutlinePeriodUs = 100'000;
 
 std::vector<Geodetic> OnEarth(const GeographicLib::LocalCartesian& map, const Polygon& outline_m) {
@@ -65,12 +64,12 @@ void AddOutlines(const sim::Scene& scene, const config::BoatFacts& boat, double 
     truth.AddObject(object.id, {object.name, object.kind, object.track.is_moving(), object.is_in_water});
     if (object.track.is_moving()) continue;
     const auto place = object.track.At(0.0);
-    truth.AddOutline(object.id, ToUtimeUs(kStart), OnEarth(map, OutlineAt(place.position_map_m, place.heading_rad, object.outline_m)));
+    truth.AddOutline(object.id, ToUtimeUs(kSimulationStart), OnEarth(map, OutlineAt(place.position_map_m, place.heading_rad, object.outline_m)));
   }
   const auto num_periods = static_cast<int>(std::ceil(seconds * 1e6 / static_cast<double>(kOutlinePeriodUs)));
   for (int i = 0; i <= num_periods + 1; ++i) {
     const double time_s = 1e-6 * static_cast<double>(i * kOutlinePeriodUs);
-    const std::int64_t utime_us = ToUtimeUs(kStart) + i * kOutlinePeriodUs;
+    const std::int64_t utime_us = ToUtimeUs(kSimulationStart) + i * kOutlinePeriodUs;
     const auto own = sim::StateAt(scene.own_motion, boat.reference_point_above_water_m, time_s);
     truth.AddOutline(sim::kOwnVessel, utime_us, OnEarth(map, OutlineAt(own.position_map_m.head<2>(), own.heading_rad, OwnHullOf(boat))));
     for (const auto& object : scene.objects) {
@@ -174,6 +173,16 @@ void ReadReturnRows(const CaptureWithTruth& files, Truth& truth) {
   truth.AddReturns(std::move(returns));
 }
 
+// Writes a file of a config anew.
+template <typename Message>
+void WriteConfig(const fs::path& file, const Message& message) {
+  std::string text;
+  google::protobuf::TextFormat::PrintToString(message, &text);
+  io::OutputFile out(file, io::OutputOptions{.force = true});
+  out.Write(text);
+  out.Commit();
+}
+
 }  // namespace
 
 void BeginRuns(const RunOptions& options, bool has_captures, const std::string& option) {
@@ -214,7 +223,7 @@ void SimulateRun(const fs::path& config_folder, const fs::path& scene_file, std:
   if (!lidar.empty()) scene.lidar = lidar;
   AddOutlines(scene, boat, seconds, truth);
   auto params = sim::ParamsOfConfig(config_folder);
-  params.start = kStart;
+  params.start = kSimulationStart;
   params.duration = std::chrono::microseconds(std::llround(seconds * 1e6));
   params.seed = seed;
   const auto add_returns = [&truth](const std::vector<sim::TrueReturn>& of_lidar) {
@@ -298,17 +307,22 @@ ConfigOfCaptures::ConfigOfCaptures(const fs::path& captures, const fs::path& con
   if (fs::exists(captures / "boat.txtpb")) fs::copy_file(captures / "boat.txtpb", path() / "boat.txtpb", fs::copy_options::overwrite_existing);
 }
 
+ConfigWithoutLidarNmea::ConfigWithoutLidarNmea(const fs::path& config_folder) {
+  fs::copy(config_folder, path(), fs::copy_options::recursive);
+  const auto file = path() / "navigator.txtpb";
+  config::Navigator message;
+  config::LoadText(file, message);
+  message.set_use_lidar_nmea(false);
+  WriteConfig(file, message);
+}
+
 ConfigWithEvidence::ConfigWithEvidence(const fs::path& config_folder, const fs::path& evidence_file) {
   fs::copy(config_folder, path(), fs::copy_options::recursive);
   const auto file = path() / "segmenter.txtpb";
   config::Segmenter message;
   config::LoadText(file, message);
   message.set_evidence(fs::absolute(evidence_file));
-  std::string text;
-  google::protobuf::TextFormat::PrintToString(message, &text);
-  io::OutputFile out(file, io::OutputOptions{.force = true});
-  out.Write(text);
-  out.Commit();
+  WriteConfig(file, message);
 }
 
 }  // namespace lookout::eval

@@ -37,6 +37,9 @@ void BeginRuns(const RunOptions& options, bool has_captures, const std::string& 
 void ForEachRun(const RunOptions& options,
                 const std::function<void(const std::filesystem::path& file, const std::string& scene, std::uint64_t seed)>& handle);
 
+/// The time 0 of simulated runs, as lookout-sim has it: any date serves, as long as it is always the same.
+inline constexpr Utime kSimulationStart{std::chrono::microseconds(1'781'532'600'000'000)};
+
 using DatagramHandler = std::function<void(const replay::Datagram&)>;
 
 /// Sends a scan in place of its packets: all parts of LIDAR_SCAN.
@@ -98,6 +101,17 @@ class ConfigOfCaptures {
  public:
   /// Copies config_folder, and boat.txtpb of the captures over it where there is one. @throws std::filesystem::filesystem_error
   ConfigOfCaptures(const std::filesystem::path& captures, const std::filesystem::path& config_folder);
+  const std::filesystem::path& path() const { return folder_.path(); }
+
+ private:
+  TempFolder folder_;
+};
+
+/// A config folder whose navigator does not read the receiver behind the lidar: as long as this lives.
+class ConfigWithoutLidarNmea {
+ public:
+  /// @throws std::filesystem::filesystem_error; config::ConfigError; std::runtime_error
+  explicit ConfigWithoutLidarNmea(const std::filesystem::path& config_folder);
   const std::filesystem::path& path() const { return folder_.path(); }
 
  private:

@@ -1,6 +1,7 @@
 #include "lab/eval/tracks/track_truth.hpp"
 
 #include <GeographicLib/LocalCartesian.hpp>
+#include <cmath>
 
 #include "lab/eval/methods/outcome.hpp"
 #include "lab/eval/tracks/track_geometry.hpp"
@@ -13,12 +14,23 @@ std::map<std::int32_t, data::ScanObject> ObjectsOf(const Truth& truth) {
   return objects;
 }
 
-TrackTruth::TrackTruth(const Truth& truth, const MapOrigin& origin)
-    : objects_(ObjectsOf(truth)), outlines_(truth.OutlinesIn(GeographicLib::LocalCartesian(origin[0], origin[1], origin[2]))) {
+TrackTruth::TrackTruth(const Truth& truth, const MapPlacement& map)
+    : objects_(ObjectsOf(truth)), outlines_(truth.OutlinesIn(GeographicLib::LocalCartesian(map.origin[0], map.origin[1], map.origin[2]))) {
+  const double sin = std::sin(map.y_axis_rad);
+  const double cos = std::cos(map.y_axis_rad);
+  R_map_north_ << cos, -sin, sin, cos;
   for (const auto& [id, object] : truth.objects()) {
-    const auto outline_m = outlines_.At(id, 0);
+    const auto outline_m = OutlineAt(id, 0);
     if (id > 0 && !object.is_moving && outline_m) standing_[id] = MakeThing(id, *outline_m);
   }
+}
+
+std::optional<Polygon> TrackTruth::OutlineAt(int id, std::int64_t utime_us) const {
+  auto outline_m = outlines_.At(id, utime_us);
+  if (outline_m) {
+    for (auto& p_m : *outline_m) p_m = (R_map_north_ * p_m).eval();
+  }
+  return outline_m;
 }
 
 TrueThing TrackTruth::MakeThing(int id, const Polygon& outline_m) const {
@@ -34,8 +46,8 @@ TrueThing TrackTruth::MakeThing(int id, const Polygon& outline_m) const {
 
 Eigen::Vector2d TrackTruth::VelocityOf(int id, std::int64_t utime_us) const {
   constexpr std::int64_t kHalfUs = 50'000;
-  const auto before_m = outlines_.At(id, utime_us - kHalfUs);
-  const auto after_m = outlines_.At(id, utime_us + kHalfUs);
+  const auto before_m = OutlineAt(id, utime_us - kHalfUs);
+  const auto after_m = OutlineAt(id, utime_us + kHalfUs);
   return (CenterOf(*after_m) - CenterOf(*before_m)) / (2e-6 * static_cast<double>(kHalfUs));
 }
 
@@ -44,7 +56,7 @@ TrueScan TrackTruth::At(std::int64_t utime_us, const std::map<int, int>& num_ret
   scan.utime_us = utime_us;
   for (const auto& [id, object] : objects_) {
     if (id == data::kNoTrueObject) continue;
-    const auto outline_m = outlines_.At(id, utime_us);
+    const auto outline_m = OutlineAt(id, utime_us);
     if (!outline_m) continue;
     if (id == data::kOwnVesselObject) {
       scan.own = TrueBoat{*outline_m, VelocityOf(id, utime_us)};

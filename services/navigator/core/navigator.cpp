@@ -62,7 +62,8 @@ void Navigator::OnOdometry(const Item& item) {
     return;
   }
   ++num_motions_;
-  relative_.Add(*motion);
+  filter_.Add(*motion, item.time);
+  if (relative_.Wants(item.time)) relative_.Add(*motion);
 }
 
 void Navigator::OnSentence(const Item& item, NavigatorOutput& output) {

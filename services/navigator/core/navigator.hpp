@@ -44,8 +44,8 @@ class Navigator {
   /// End of input that has no end mark: the pose that an end mark would have added.
   NavigatorOutput Flush();
 
-  /// Whether a motion of the odometer would be used now: where position or heading have not been known for a while.
-  bool WantsOdometry() const { return time_ && params_.use_lidar_odometry && relative_.Wants(*time_); }
+  /// Whether a motion of the odometer would be used now: with the first item of another kind.
+  bool WantsOdometry() const { return time_ && params_.use_lidar_odometry; }
   const RelativeFrame& relative_frame() const { return relative_; }
 
   /// Time of the last item.

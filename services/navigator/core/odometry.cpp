@@ -27,6 +27,15 @@ std::string Field(double value, int decimals) {
   return {text.data(), static_cast<std::size_t>(length)};
 }
 
+// Positive definite but for the rounding of the text (Sylvester's criterion).
+bool IsCovariance(const Eigen::Matrix3d& covariance) {
+  constexpr double kRounding = 1e-12;
+  Eigen::Matrix3d inflated = covariance;
+  inflated.diagonal() *= kInflatedVariance;
+  inflated.diagonal().array() += kRounding;
+  return inflated(0, 0) > 0.0 && inflated.topLeftCorner<2, 2>().determinant() > 0.0 && inflated.determinant() > 0.0;
+}
+
 }  // namespace
 
 std::string ToSentence(const OdometryMotion& motion) {
@@ -70,6 +79,7 @@ std::optional<OdometryMotion> ParseOdometry(std::string_view line) {
       if (std::abs(motion.covariance(i, k)) > bound * 1.001 + 1e-9) return std::nullopt;
     }
   }
+  if (!IsCovariance(motion.covariance)) return std::nullopt;
   return motion;
 }
 

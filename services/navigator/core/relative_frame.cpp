@@ -45,7 +45,10 @@ void RelativeFrame::Begin(Utime start) {
 
 bool RelativeFrame::MayBegin(Utime time) const {
   if (!start_) return false;
-  if (last_earth_) return time - *last_earth_ >= kBeginsAfterEarth;
+  if (last_earth_) {
+    const std::chrono::microseconds known_for = *last_earth_ - *first_earth_;
+    return time - *last_earth_ >= std::clamp<std::chrono::microseconds>(known_for, kBeginsWithSentences, kBeginsAfterEarth);
+  }
   return time - *start_ >= (has_sentence_ ? std::chrono::microseconds(kBeginsWithSentences) : std::chrono::microseconds(kBeginsSilent));
 }
 
@@ -141,8 +144,15 @@ void RelativeFrame::Activate(const Pose& earth) {
   }
 }
 
+// The boat keeps its way so far, and goes on along the other heading.
+void RelativeFrame::TurnTo(double heading_rad, double shown_rad) {
+  const double by_rad = WrapToPi(heading_rad - shown_rad);
+  for (auto& node : nodes_) node.heading_rad = WrapTo2Pi(node.heading_rad + by_rad);
+}
+
 Pose RelativeFrame::At(const Pose& earth, double tilt_sd_rad) {
   if (earth.status == PoseStatus::kOk || earth.status == PoseStatus::kCoasting) {
+    if (is_active_ || !first_earth_) first_earth_ = earth.time;
     last_earth_ = earth.time;
     is_active_ = false;
     nodes_.clear();
@@ -154,6 +164,8 @@ Pose RelativeFrame::At(const Pose& earth, double tilt_sd_rad) {
     if (!MayBegin(earth.time)) return earth;
     Activate(earth);
   }
+  // Where north is known the filter tells the heading, by compass and motions.
+  if (heading_source_ != HeadingSource::kNone && earth.status == PoseStatus::kNoPosition) TurnTo(earth.heading_rad, NodeAt(earth.time).heading_rad);
   const Node node = NodeAt(earth.time);
   const auto since = last_known_ ? earth.time - *last_known_ : std::chrono::microseconds::max();
   Pose pose = earth;

@@ -19,7 +19,7 @@ class RelativeFrame {
   /// It begins so long after the start where nothing told of a place: no sentence at all, or sentences without position and heading.
   static constexpr std::chrono::milliseconds kBeginsSilent{500};
   static constexpr std::chrono::seconds kBeginsWithSentences{3};
-  /// And so long after the last pose on the earth: by then tracks have ended.
+  /// And so long after the last pose on the earth, by when tracks have ended; sooner where the earth had not been known for so long.
   static constexpr std::chrono::seconds kBeginsAfterEarth{30};
   /// Without a known motion the boat goes on as it went for so long; then its own motion is not known.
   static constexpr std::chrono::milliseconds kFresh{350};
@@ -50,11 +50,13 @@ class RelativeFrame {
   };
   bool MayBegin(Utime time) const;
   void Activate(const Pose& earth);
+  void TurnTo(double heading_rad, double shown_rad);
   Node NodeAt(Utime time) const;
   Node Extrapolated(Utime time) const;
   static Node Moved(const Node& from, Utime time, const Eigen::Vector2d& displacement_m, double turn_rad, const Eigen::Matrix3d& covariance);
 
   std::optional<Utime> start_;
+  std::optional<Utime> first_earth_;  // pose on the earth since the last frame, or since the start
   std::optional<Utime> last_earth_;
   bool has_sentence_ = false;
   bool has_motion_ = false;  // one has come, known or not

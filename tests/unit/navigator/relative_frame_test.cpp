@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "common/core/angles.hpp"
 
@@ -59,6 +60,11 @@ TEST(Odometry, RefusesOtherLines) {
   EXPECT_FALSE(ParseOdometry("$PLKODO,1,2,K*61"));
   auto motion = Straight(kStart, 0.1);
   motion.covariance(0, 0) = -1.0;
+  EXPECT_FALSE(ParseOdometry(ToSentence(motion)));
+  // Each pair may be correlated so, not all three.
+  motion = Straight(kStart, 0.1);
+  motion.covariance = Eigen::Vector3d(1e-2, 1e-2, 1e-2).asDiagonal();
+  for (const auto& [row, column] : {std::pair{0, 1}, {0, 2}, {1, 2}}) motion.covariance(row, column) = motion.covariance(column, row) = -0.8e-2;
   EXPECT_FALSE(ParseOdometry(ToSentence(motion)));
   motion = Straight(kStart, 200.0);
   EXPECT_FALSE(ParseOdometry(ToSentence(motion)));
@@ -175,6 +181,7 @@ TEST(RelativeFrame, TheEarthComesFirst) {
   frame.Begin(kStart);
   for (int i = 1; i <= 10; ++i) frame.Add(Straight(kStart + i * 100ms, 0.1));
   EXPECT_EQ(frame.At(Unknown(kStart + 1s), kTiltSdRad).status, PoseStatus::kRelative);
+  EXPECT_EQ(frame.At(OnEarth(kStart + 2s - 40s), kTiltSdRad).datum.latitude_deg, 54.0);
   EXPECT_EQ(frame.At(OnEarth(kStart + 2s), kTiltSdRad).datum.latitude_deg, 54.0);
   // A gap is a gap: tracks of the earth live on in it.
   EXPECT_FALSE(frame.Wants(kStart + 20s));
@@ -189,6 +196,44 @@ TEST(RelativeFrame, TheEarthComesFirst) {
   const auto after = frame.At(Unknown(kStart + 32s + 100ms), kTiltSdRad);
   EXPECT_NEAR(after.p_map_m.y(), 0.3, 1e-9);
   EXPECT_LT(after.covariance(1, 1), 2e-4);
+}
+
+// One fix that is lost again does not take the look-out away for half a minute.
+TEST(RelativeFrame, AMomentOnTheEarthIsSoonOver) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  frame.NoteSentence();
+  frame.Add(Straight(kStart + 4s, 0.1));
+  EXPECT_EQ(frame.At(Unknown(kStart + 4s), kTiltSdRad).status, PoseStatus::kRelative);
+  frame.At(OnEarth(kStart + 5s), kTiltSdRad);
+  frame.At(OnEarth(kStart + 6s), kTiltSdRad);
+  EXPECT_EQ(frame.At(Unknown(kStart + 8s), kTiltSdRad).status, PoseStatus::kUnknown);
+  EXPECT_NE(frame.At(Unknown(kStart + 9s), kTiltSdRad).status, PoseStatus::kUnknown);
+  // As long as it had been there: gaps within do not count.
+  frame.At(OnEarth(kStart + 20s), kTiltSdRad);
+  frame.At(Unknown(kStart + 22s), kTiltSdRad);
+  frame.At(OnEarth(kStart + 30s), kTiltSdRad);
+  EXPECT_EQ(frame.At(Unknown(kStart + 39s), kTiltSdRad).status, PoseStatus::kUnknown);
+  EXPECT_NE(frame.At(Unknown(kStart + 40s), kTiltSdRad).status, PoseStatus::kUnknown);
+}
+
+// A compass without a receiver: the frame is north up, and its heading stays that of the compass.
+TEST(RelativeFrame, ACompassTellsTheHeadingAllTheTime) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  Pose pose;
+  for (int i = 1; i <= 30; ++i) {
+    auto compass = Unknown(kStart + i * 100ms);
+    compass.status = PoseStatus::kNoPosition;
+    compass.heading_source = HeadingSource::kHdt;
+    compass.heading_rad = i < 20 ? 0.0 : kPi / 2.0;
+    compass.covariance(8, 8) = 1e-4;
+    frame.Add(Straight(compass.time, 0.2));
+    pose = frame.At(compass, kTiltSdRad);
+  }
+  EXPECT_NEAR(pose.heading_rad, kPi / 2.0, 1e-9);
+  EXPECT_NEAR(pose.p_map_m.x(), 10 * 0.2, 1e-9) << "to the east since the bow points there";
+  EXPECT_NEAR(pose.p_map_m.y(), 15 * 0.2, 1e-9);
 }
 
 // Both would count as one map, and acknowledgements be taken over by places in it.

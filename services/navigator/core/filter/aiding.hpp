@@ -9,6 +9,7 @@
 #include "services/navigator/core/filter/motion.hpp"
 #include "services/navigator/core/filter/params.hpp"
 #include "services/navigator/core/filter/state.hpp"
+#include "services/navigator/core/odometry.hpp"
 
 namespace lookout::navigator::filter {
 
@@ -47,6 +48,10 @@ void Apply(const FixMeasurement& fix, const FilterParams& params, State& state, 
 void Apply(const VelocityMeasurement& velocity, const FilterParams& params, State& state, GateCounts& counts);
 /// @param attitude  with standard deviations of all that it says
 void Apply(const AttitudeValues& attitude, const FilterParams& params, State& state, GateCounts& counts);
+
+/// Own motion by the lidar, from the place of the last scan: it corrects what the state has done since then, and never places the boat by itself. The
+/// place of this scan, to which the state has been propagated, is kept for the next motion, also where this one is unknown.
+void Apply(const OdometryMotion& motion, const FilterParams& params, State& state, GateCounts& counts);
 
 /// Gravity as the IMU feels it: levels the attitude while accelerometers do not propagate the velocity.
 void Apply(const ImuSample& sample, const FilterParams& params, State& state, GateCounts& counts);

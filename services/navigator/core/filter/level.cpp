@@ -25,6 +25,9 @@ void MoveToBoat(State& state) {
   state.nominal.p_level_m = T_next_level * state.nominal.p_level_m;
   if (!state.aiding.has_height) state.nominal.p_level_m.z() = old_up_m;
   state.nominal.water_level_m = state.nominal.p_level_m.z() - above_water_m;
+  const auto& scan_p_m = state.nominal.scan_p_level_m;
+  state.nominal.scan_p_level_m = (T_next_level * Eigen::Vector3d(scan_p_m.x(), scan_p_m.y(), old_up_m)).head<2>();
+  state.nominal.scan_heading_rad -= Atan2(R(1, 0), R(0, 0));
   state.nominal.velocity_level_mps = (R * state.nominal.velocity_level_mps).eval();
   state.nominal.q_level_vessel = (Eigen::Quaterniond(R) * state.nominal.q_level_vessel).normalized();
   state.nominal.fix_error_m = (R * state.nominal.fix_error_m).eval();
@@ -36,6 +39,7 @@ void MoveToBoat(State& state) {
     turn.block<3, 3>(part, part) = R;
   }
   if (!state.aiding.is_strapdown) turn.block<3, 3>(kAcceleration, kAcceleration) = R;
+  turn.block<2, 2>(kScanPlace, kScanPlace) = R.topLeftCorner<2, 2>();
   turn.block<1, 3>(kWaterLevel, kPosition) = R.row(2);
   turn(kWaterLevel, kPositionUp) -= 1.0;
   state.covariance = (turn * state.covariance * turn.transpose()).eval();
@@ -70,7 +74,7 @@ void FollowBoat(State& state) {
 
 void ForgetPlace(State& state) {
   if (state.nominal.level && state.aiding.has_position) MoveToBoat(state);
-  state.aiding.has_position = state.aiding.has_height = false;
+  state.aiding.has_position = state.aiding.has_height = state.aiding.scan_place.has_position = false;
 }
 
 void BeginLevel(const GeodeticPlace& place, const Eigen::Vector2d& from_place_m, State& state) {

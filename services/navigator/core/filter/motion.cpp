@@ -185,8 +185,10 @@ void ForgetOld(const FilterParams& params, State& state) {
     const double heading_variance = state.covariance(kRotationUp, kRotationUp);
     const auto& source = state.aiding.heading();
     const auto max_age = state.aiding.heading_source == HeadingSource::kCourse ? params.max_position_age : params.max_attitude_age;
-    const bool is_carried = state.aiding.has_gyro ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad
-                                                  : source.IsWithin(state.time, max_age);
+    // Gyroscopes and the lidar tell the turn.
+    const bool is_turn_known = state.aiding.has_gyro || state.aiding.odometry.IsWithin(state.time, params.max_attitude_age);
+    const bool is_carried =
+        is_turn_known ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad : source.IsWithin(state.time, max_age);
     if (!is_carried && !source.IsWithin(state.time, params.max_attitude_age)) {
       // Position is that of the antenna again.
       if (state.aiding.has_position) ShiftPosition(state.nominal.R_level_vessel() * AntennaLever(params), state);
@@ -201,12 +203,15 @@ void ForgetOld(const FilterParams& params, State& state) {
     const double heading_rad = AnglesOf(state.nominal.R_level_vessel())[2];
     state.nominal.q_level_vessel = RotationBy(Eigen::Vector3d(0.0, 0.0, kPi / 2.0 - heading_rad));
     const double heading_variance = state.covariance(kRotationUp, kRotationUp);
+    state.aiding.scan_place = {};
     ResetError<3>(kRotation, Eigen::Vector3d(params.unmeasured_tilt_sd_rad, params.unmeasured_tilt_sd_rad, std::sqrt(heading_variance)), state);
   }
   if (state.aiding.has_position) {
     const double variance = state.HorizontalVarianceM2();
     const double max_variance = state.aiding.position_sd_at_fix_m * state.aiding.position_sd_at_fix_m + params.max_coast_sd_m * params.max_coast_sd_m;
-    const bool is_carried = state.aiding.fix.IsWithin(state.time, params.max_position_age) && variance <= max_variance;
+    const bool is_way_known =
+        state.aiding.fix.IsWithin(state.time, params.max_position_age) || state.aiding.odometry.IsWithin(state.time, params.max_position_age);
+    const bool is_carried = is_way_known && variance <= max_variance;
     // Contradicting fixes are not forgotten: they tell the next one what was wrong.
     if (!is_carried && state.aiding.fix.IsStoppedAt(state.time)) ForgetPlace(state);
   }

@@ -33,6 +33,12 @@ constexpr std::chrono::microseconds kMaxAge = 10s;
 constexpr double kUnknownSpeedMps = 3.0;
 constexpr double kUnknownAccelerationMps2 = 0.5;
 
+// The lidar's clock may be ahead of the computer's by so much.
+constexpr std::chrono::microseconds kMaxAhead = 200ms;
+// A motion of the lidar that is used counts for so long, and contradictions are told after so long.
+constexpr std::chrono::microseconds kMotionAge = 500ms;
+constexpr std::chrono::microseconds kContradiction = 1s;
+
 double PossibleAgeS(const MeasurementTime& when) {
   if (!when.has_sentence_utc || when.is_from_sentence) return 0.0;
   const auto age = when.arrival - when.utc;
@@ -333,6 +339,10 @@ void PoseFilter::Add(const ImuSample& sample) {
   if (!Insert(sample.time, sample)) ++counts_["late_imu"];
 }
 
+void PoseFilter::Add(const OdometryMotion& motion, Utime now) {
+  if (motion.end > now + kMaxAhead || !Insert(motion.end, motion)) ++counts_["late_odometry"];
+}
+
 void PoseFilter::AdvanceTo(Utime time) { Insert(time, filter::Tick{}); }
 
 const State& PoseFilter::StateBefore(std::size_t index) const { return index > 0 ? events_[index - 1].after : *base_; }
@@ -355,6 +365,10 @@ void PoseFilter::Process(Event& event, std::size_t index) {
   std::visit([&](const auto& measurement) { Apply(measurement, params_, state, counts); }, event.measurement);
   if (event.is_counted) return;
   event.is_counted = true;
+  if (std::holds_alternative<OdometryMotion>(event.measurement)) {
+    counts_["gated_odometry"] += counts.num_gated;
+    return;
+  }
   const bool is_attitude = std::holds_alternative<AttitudeValues>(event.measurement);
   (is_attitude ? counts_["gated_attitude"] : counts_["gated_fix"]) += counts.num_gated;
   (is_attitude ? counts_["renewed_attitude"] : counts_["renewed_position"]) += counts.num_renewed;
@@ -385,6 +399,11 @@ Pose PoseFilter::At(Utime time) {
   state.time = time;
   DropOld();
   stopped_ = StoppedInputs(state);
+  const auto& aiding = state.aiding;
+  const bool is_carried = (aiding.has_position && aiding.fix.IsStoppedAt(time)) || (aiding.has_heading && aiding.heading().IsStoppedAt(time));
+  is_carried_by_lidar_ = is_carried && aiding.odometry.IsWithin(time, kMotionAge);
+  const bool contradicts = aiding.odometry_contradicts_since && time - *aiding.odometry_contradicts_since >= kContradiction;
+  contradicts_lidar_ = contradicts || IsOdometryRefused(state);
   NameDoubted(time);
   return ToPose(state, datum_, map_ ? &*map_ : nullptr, params_);
 }

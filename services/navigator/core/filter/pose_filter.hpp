@@ -24,7 +24,7 @@ namespace lookout::navigator {
 /// Measurements that were not used, or only against the state: README.md has the meaning of each.
 inline constexpr auto kFilterCountNames =
     std::to_array<std::string_view>({"unusable_fix", "unreachable_fix", "new_place", "late_fix", "late_attitude", "late_imu", "unusable_imu",
-                                     "gated_fix", "gated_attitude", "renewed_position", "renewed_attitude"});
+                                     "gated_fix", "gated_attitude", "renewed_position", "renewed_attitude", "late_odometry", "gated_odometry"});
 using FilterCounts = Counts<kFilterCountNames>;
 
 /// An error-state Kalman filter that is run again from the instant of a late measurement: the pose of a time depends on the
@@ -33,7 +33,7 @@ using FilterCounts = Counts<kFilterCountNames>;
 /// Inputs are kept, with the state behind each, for `max_latency` and a second, and at most kMaxEvents of them.
 class PoseFilter {
  public:
-  /// 60 s of an IMU at 400 Hz and the other measurements would be 100 MB; so many are 14 MB, 10 s of it.
+  /// 60 s of an IMU at 400 Hz and the other measurements would be 100 MB; so many are 18 MB, 10 s of it.
   static constexpr std::size_t kMaxEvents = 4000;
 
   explicit PoseFilter(const FilterParams& params);
@@ -47,6 +47,8 @@ class PoseFilter {
   void Add(const GroundVelocity& velocity);
   void Add(const Attitude& attitude);
   void Add(const ImuSample& sample);
+  /// @param now  time of the item that holds it: no motion ends later
+  void Add(const OdometryMotion& motion, Utime now);
   /// Time has come so far: nothing else need have.
   void AdvanceTo(Utime time);
 
@@ -70,11 +72,16 @@ class PoseFilter {
   /// Fixes that are held at the time of the last pose since no boat can have got there (believed_place.hpp), in words; empty = none.
   const std::string& doubted() const { return doubted_; }
 
+  /// At the time of the last pose position or heading, whose input has stopped, is carried on by motions of the lidar.
+  bool is_carried_by_lidar() const { return is_carried_by_lidar_; }
+  /// At that time motions of the lidar have contradicted the state for a second and more.
+  bool contradicts_lidar() const { return contradicts_lidar_; }
+
   /// Inputs that have stopped at the time of the last pose, in words: "no position fix for 3 s", ...; empty = none.
   const std::string& stopped() const { return stopped_; }
 
  private:
-  using Measurement = std::variant<filter::Tick, ImuSample, AttitudeValues, filter::VelocityMeasurement, filter::FixMeasurement>;
+  using Measurement = std::variant<filter::Tick, ImuSample, AttitudeValues, filter::VelocityMeasurement, filter::FixMeasurement, OdometryMotion>;
   struct Event {
     Utime time;
     Measurement measurement;
@@ -132,6 +139,8 @@ class PoseFilter {
   std::string datum_complaint_;
   std::string doubted_;
   bool has_had_heading_ = false;
+  bool is_carried_by_lidar_ = false;
+  bool contradicts_lidar_ = false;
 };
 
 }  // namespace lookout::navigator

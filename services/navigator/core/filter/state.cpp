@@ -19,9 +19,11 @@ constexpr double kUnknownRateSdRadps = 0.2;
 constexpr double kUnknownAccelerationSdMps2 = 0.5;
 constexpr double kUnknownLevelSdM = 1.0;
 
-// How long an IMU is not used that led the state astray.
+// How long an IMU, or the lidar's motion, is not used that led the state astray.
 constexpr double kFirstRefusalS = 10.0;
 constexpr double kMaxRefusalS = 600.0;
+// A motion that was used within this time has led the state.
+constexpr std::chrono::seconds kLedByLidar{5};
 // A boat without an IMU goes up and down by so much.
 constexpr double kUpSdMps = 0.5;
 
@@ -70,6 +72,15 @@ void RefuseImu(double tilt_sd_rad, State& state) {
   BeginMeanForce(state);
 }
 
+void RefuseOdometry(State& state) {
+  auto& aiding = state.aiding;
+  if (!aiding.odometry.IsWithin(state.time, kLedByLidar)) return;
+  aiding.odometry_refusal_s = std::clamp(2.0 * aiding.odometry_refusal_s, kFirstRefusalS, kMaxRefusalS);
+  aiding.odometry_refused_until = state.time + std::chrono::microseconds(std::llround(1e6 * aiding.odometry_refusal_s));
+}
+
+bool IsOdometryRefused(const State& state) { return state.aiding.odometry_refused_until && state.time < *state.aiding.odometry_refused_until; }
+
 void BeginMeanForce(State& state) {
   state.aiding.num_forces = 0;
   state.aiding.force_sum_mps2.setZero();
@@ -86,6 +97,8 @@ void Inject(const ErrorVector& error, State& state) {
   state.nominal.fix_error_m += error.segment<3>(kFixError);
   state.nominal.heading_error_rad += error[kHeadingError];
   state.nominal.water_level_m += error[kWaterLevel];
+  state.nominal.scan_p_level_m += error.segment<2>(kScanPlace);
+  state.nominal.scan_heading_rad -= error[kScanRotation];
   state.nominal.angular_velocity_radps += (state.aiding.has_gyro ? -1.0 : 1.0) * error.segment<3>(kRate);
 }
 
@@ -133,6 +146,7 @@ Eigen::Quaterniond RotationBy(const Eigen::Vector3d& rotation_rad) {
 void TurnClockwise(double angle_rad, State& state) {
   const Eigen::Quaterniond turn = RotationBy(Eigen::Vector3d(0.0, 0.0, -angle_rad));
   const Eigen::Matrix3d R = turn.toRotationMatrix();
+  state.aiding.scan_place = {};
   state.nominal.q_level_vessel = (turn * state.nominal.q_level_vessel).normalized();
   state.covariance.middleRows<3>(kRotation) = (R * state.covariance.middleRows<3>(kRotation)).eval();
   state.covariance.middleCols<3>(kRotation) = (state.covariance.middleCols<3>(kRotation) * R.transpose()).eval();
@@ -144,12 +158,38 @@ void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& s
   state.nominal.q_level_vessel = q_level_vessel.normalized();
   state.nominal.q_level_vessel =
       (RotationBy(Eigen::Vector3d(0.0, 0.0, AnglesOf(state.nominal.R_level_vessel())[2] - heading_rad)) * state.nominal.q_level_vessel).normalized();
+  state.aiding.scan_place = {};
   ResetError<2>(kRotation, Eigen::Vector2d::Constant(sd_rad), state);
   state.covariance(kRotationUp, kRotationUp) = heading_variance;
   state.aiding.has_tilt = true;
 }
 
+PlanarPlace PlanarPlaceOf(const FilterParams& params, const State& state) {
+  PlanarPlace place;
+  const Eigen::Matrix3d R_level_vessel = state.nominal.R_level_vessel();
+  const Eigen::Vector3d reference_level_m = -(R_level_vessel * params.p_vessel_imu_m);  // from the origin
+  place.p_level_m = (state.nominal.p_level_m + reference_level_m).head<2>();
+  place.heading_rad = AnglesOf(R_level_vessel)[2];
+  place.jacobian.block<2, 2>(0, kPosition).setIdentity();
+  place.jacobian.block<2, 3>(0, kRotation) = -Cross(reference_level_m).topRows<2>();
+  place.jacobian.block<1, 3>(2, kRotation) = -AngleJacobian(R_level_vessel).row(2);
+  return place;
+}
+
+void SetScanPlace(const FilterParams& params, State& state) {
+  const auto place = PlanarPlaceOf(params, state);
+  state.nominal.scan_p_level_m = place.p_level_m;
+  state.nominal.scan_heading_rad = place.heading_rad;
+  ResetError<3>(kScanPlace, Eigen::Vector3d::Zero(), state);
+  const Eigen::Matrix<double, 3, kNumErrors> rows = place.jacobian * state.covariance;
+  state.covariance.middleRows<3>(kScanPlace) = rows;
+  state.covariance.middleCols<3>(kScanPlace) = rows.transpose();
+  state.covariance.block<3, 3>(kScanPlace, kScanPlace) = rows * place.jacobian.transpose();
+  state.aiding.scan_place = {state.time, state.aiding.has_position, state.aiding.has_heading};
+}
+
 void ShiftPosition(const Eigen::Vector3d& lever_level_m, State& state) {
+  state.aiding.scan_place = {};
   state.nominal.p_level_m.head<2>() += lever_level_m.head<2>();
   const Eigen::Matrix<double, 2, 3> by_rotation = -Cross(lever_level_m).topRows<2>();
   state.covariance.middleRows<2>(kPosition) += by_rotation * state.covariance.middleRows<3>(kRotation);

@@ -24,7 +24,8 @@ enum Part : int {
   kFixError = 15,      // common error of the receiver's positions for a while: east, north, up, m
   kHeadingError = 18,  // the same of the compass, rad, clockwise
   kWaterLevel = 19,    // up of the origin while the boat lies still on calm water, m
-  kNumErrors = 20,
+  kScanPlace = 20,     // of the reference point at the end of the last scan: east, north, m, and rotation about up, rad (ScanPlace)
+  kNumErrors = 23,
 
   kPositionEast = kPosition,
   kPositionNorth = kPosition + 1,
@@ -33,6 +34,7 @@ enum Part : int {
   kVelocityUp = kVelocity + 2,
   kRotationUp = kRotation + 2,
   kFixErrorUp = kFixError + 2,
+  kScanRotation = kScanPlace + 2,
 };
 
 using ErrorVector = Eigen::Matrix<double, kNumErrors, 1>;
@@ -91,10 +93,21 @@ struct NominalState {
   Eigen::Vector3d fix_error_m = Eigen::Vector3d::Zero();
   double heading_error_rad = 0.0;
   double water_level_m = 0.0;
+  // See kScanPlace; heading clockwise from north.
+  Eigen::Vector2d scan_p_level_m = Eigen::Vector2d::Zero();
+  double scan_heading_rad = 0.0;
   // Turn rate of the vessel, in its frame: follows from the IMU or from `rate`.
   Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
 
   Eigen::Matrix3d R_level_vessel() const { return q_level_vessel.toRotationMatrix(); }
+};
+
+/// The place from which the next motion of the odometer goes. It is a copy of the state at the end of a scan, with its covariance (stochastic
+/// cloning: Roumeliotis and Burdick, ICRA 2002), so that a motion is compared with what the state itself has done since.
+struct ScanPlace {
+  std::optional<Utime> time;  // nullopt: there is none, or the state was set anew since
+  bool has_position = false;
+  bool has_heading = false;
 };
 
 /// Which parts of the state mean something, what propagates them, and which measurements came when.
@@ -126,6 +139,13 @@ struct AidingStatus {
   UseTimes timed_velocity;
   std::optional<Utime> last_water_aid;
   double position_sd_at_fix_m = 0.0;
+
+  ScanPlace scan_place;
+  UseTimes odometry;                                // motions that agreed with the state
+  std::optional<Utime> odometry_contradicts_since;  // each since then was refused
+  // Fixes or headings contradicted a state that went by the lidar: its motions are not used until then, and next time for so long.
+  std::optional<Utime> odometry_refused_until;
+  double odometry_refusal_s = 0.0;
 
   Refusals fix_refusals;
   Refusals heading_refusals;
@@ -167,6 +187,11 @@ State FreshState(Utime time, double tilt_sd_rad);
 void RefuseImu(double tilt_sd_rad, State& state);
 bool IsImuRefused(const State& state);
 
+/// The state was wrong for long though the lidar told its way: its motions are not used for a while, twice as long each time. Nothing where they were
+/// not used.
+void RefuseOdometry(State& state);
+bool IsOdometryRefused(const State& state);
+
 /// The next specific force is the first of a new mean.
 void BeginMeanForce(State& state);
 
@@ -194,7 +219,7 @@ Eigen::Matrix3d Cross(const Eigen::Vector3d& v);
 /// Rotation by a vector: axis times angle.
 Eigen::Quaterniond RotationBy(const Eigen::Vector3d& rotation_rad);
 
-/// Turns the vessel about the up axis, clockwise from above, and the errors of its attitude with it.
+/// Turns the vessel about the up axis, clockwise from above, and the errors of its attitude with it. The place of the last scan is void.
 void TurnClockwise(double angle_rad, State& state);
 
 /// Turns the vessel to this roll and pitch, keeping its heading and the deviation of the heading. The tilt is measured from now on.
@@ -202,7 +227,18 @@ void TurnClockwise(double angle_rad, State& state);
 /// @param q_level_vessel  of any heading
 void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state);
 
-/// Moves the place that p_level_m describes by `lever_level_m`, which turns with the vessel; east and north only.
+/// The reference point on the water and the heading, and how the error changes them: of east, north and the rotation about up.
+struct PlanarPlace {
+  Eigen::Vector2d p_level_m = Eigen::Vector2d::Zero();
+  double heading_rad = 0.0;  // clockwise from north of the level frame
+  Eigen::Matrix<double, 3, kNumErrors> jacobian = Eigen::Matrix<double, 3, kNumErrors>::Zero();
+};
+PlanarPlace PlanarPlaceOf(const FilterParams& params, const State& state);
+
+/// Copies the place of now into that of the last scan.
+void SetScanPlace(const FilterParams& params, State& state);
+
+/// Moves the place that p_level_m describes by `lever_level_m`, which turns with the vessel; east and north only. The place of the last scan is void.
 void ShiftPosition(const Eigen::Vector3d& lever_level_m, State& state);
 
 double SecondsBetween(Utime from, Utime to);

@@ -1,0 +1,312 @@
+// Own motion by the lidar as an aid of the filter on the earth.
+#include <GeographicLib/LocalCartesian.hpp>
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+#include "common/core/angles.hpp"
+#include "services/navigator/core/filter/pose_filter.hpp"
+#include "tests/unit/navigator/filter_measurements.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kScanS = 0.1;
+constexpr double kWaySdM = 0.03;
+constexpr double kTurnSdRad = DegToRad(0.02);
+
+// A boat on an arc, bow along the course, from the test's place to the north at time 0.
+struct ArcBoat {
+  double speed_mps = 2.0;
+  double turn_radps = 0.0;  // clockwise
+
+  double HeadingRad(double t) const { return turn_radps * t; }
+  Eigen::Vector2d PlaceM(double t) const {
+    if (turn_radps == 0.0) return {0.0, speed_mps * t};
+    const double radius_m = speed_mps / turn_radps;
+    return {radius_m * (1.0 - std::cos(HeadingRad(t))), radius_m * std::sin(HeadingRad(t))};
+  }
+  // Forward, port, turn from one scan to the next.
+  OdometryMotion Motion(double end_s) const {
+    const double begin_s = end_s - kScanS;
+    const Eigen::Vector2d way_m = PlaceM(end_s) - PlaceM(begin_s);
+    const double sin = std::sin(HeadingRad(begin_s));
+    const double cos = std::cos(HeadingRad(begin_s));
+    OdometryMotion motion{NoonPlus(begin_s), NoonPlus(end_s), true};
+    motion.displacement_m = {sin * way_m.x() + cos * way_m.y(), -cos * way_m.x() + sin * way_m.y()};
+    motion.turn_rad = turn_radps * kScanS;
+    motion.covariance = Eigen::Vector3d(1e-5, 1e-5, 1e-8).asDiagonal();
+    return motion;
+  }
+  GnssFix FixAt(double t, double sd_m) const {
+    const GeographicLib::LocalCartesian map(kLatitudeDeg, kLongitudeDeg, 0.0);
+    auto fix = MovingFix(t, speed_mps, RadToDeg(HeadingRad(t)));
+    double height_m = 0.0;
+    map.Reverse(PlaceM(t).x(), PlaceM(t).y(), 0.0, fix.position->latitude_deg, fix.position->longitude_deg, height_m);
+    fix.horizontal_sd_m = sd_m;
+    return fix;
+  }
+};
+
+struct OdometryRun {
+  ArcBoat boat;
+  FilterParams params = TestFilterParams();
+  double fix_sd_m = 0.02;
+  double gap_begin_s = 10.0;
+  double gap_end_s = 70.0;
+  double end_s = 75.0;
+  bool has_odometry = true;
+  bool has_compass_in_gap = false;
+  std::function<void(double, OdometryMotion&)> spoil = [](double, OdometryMotion&) {};
+
+  struct Result {
+    std::vector<Pose> poses;  // ten a second
+    std::vector<Eigen::Vector2d> errors_m;
+    std::vector<double> heading_errors_rad;
+    FilterCounts counts;
+    bool contradicted = false;
+    bool was_carried = false;
+
+    const Pose& At(double t) const { return poses[static_cast<std::size_t>(std::lround(t / kScanS))]; }
+    const Eigen::Vector2d& ErrorM(double t) const { return errors_m[static_cast<std::size_t>(std::lround(t / kScanS))]; }
+    double HeadingErrorRad(double t) const { return heading_errors_rad[static_cast<std::size_t>(std::lround(t / kScanS))]; }
+  };
+
+  Result Sail() const {
+    const GeographicLib::LocalCartesian map(kLatitudeDeg, kLongitudeDeg, 0.0);
+    PoseFilter filter(params);
+    Result result;
+    const auto is_gap = [this](double t) { return t > gap_begin_s && t < gap_end_s; };
+    for (int i = 0; i * kScanS <= end_s; ++i) {
+      const double t = i * kScanS;
+      if (!is_gap(t) || has_compass_in_gap) filter.Add(HeadingSample(t, RadToDeg(boat.HeadingRad(t))));
+      if (i % 2 == 0 && !is_gap(t)) filter.Add(boat.FixAt(t, fix_sd_m));
+      if (has_odometry && i > 0) {
+        auto motion = boat.Motion(t);
+        spoil(t, motion);
+        filter.Add(motion, NoonPlus(t));
+      }
+      filter.AdvanceTo(NoonPlus(t));
+      auto& pose = result.poses.emplace_back(filter.At(NoonPlus(t)));
+      Eigen::Vector3d p_m = Eigen::Vector3d::Constant(kNan);
+      if (!std::isnan(pose.latitude_deg)) map.Forward(pose.latitude_deg, pose.longitude_deg, 0.0, p_m.x(), p_m.y(), p_m.z());
+      result.errors_m.emplace_back(p_m.head<2>() - boat.PlaceM(t));
+      result.heading_errors_rad.push_back(WrapToPi(pose.heading_rad - boat.HeadingRad(t)));
+      result.contradicted = result.contradicted || filter.contradicts_lidar();
+      result.was_carried = result.was_carried || filter.is_carried_by_lidar();
+    }
+    result.counts = filter.counts();
+    return result;
+  }
+};
+
+TEST(LidarAid, CarriesPlaceAndHeadingThroughAMinuteInATurn) {
+  OdometryRun run;
+  run.boat.turn_radps = DegToRad(6.0);
+  const auto result = run.Sail();
+  const auto& pose = result.At(69.9);
+  EXPECT_EQ(pose.status, PoseStatus::kCoasting);
+  EXPECT_TRUE(result.was_carried);
+  EXPECT_LT(result.ErrorM(69.9).norm(), 0.3);
+  EXPECT_LT(std::abs(RadToDeg(result.HeadingErrorRad(69.9))), 0.3);
+  EXPECT_GT(SdM(pose), 0.1) << "nothing but the lidar says where the boat is";
+  EXPECT_LT(SdM(pose), 2.0);
+  EXPECT_LT(std::sqrt(pose.covariance(8, 8)), DegToRad(2.0));
+  run.has_odometry = false;
+  EXPECT_EQ(run.Sail().At(69.9).status, PoseStatus::kUnknown);
+}
+
+TEST(LidarAid, CarriesOnAlongAStraightWayFartherThanTheLevelFrame) {
+  OdometryRun run;
+  run.boat.speed_mps = 5.0;
+  run.params.heading_sd_rad = DegToRad(0.2);  // over 300 m a degree would be 5 m
+  run.params.p_vessel_imu_m = {-1.0, 0.3, 0.2};
+  run.params.p_vessel_antenna_m = Eigen::Vector3d::Zero();
+  const auto result = run.Sail();
+  EXPECT_EQ(result.At(69.9).status, PoseStatus::kCoasting);
+  EXPECT_LT(result.ErrorM(69.9).norm(), 0.5);
+  EXPECT_LT(std::abs(RadToDeg(result.HeadingErrorRad(69.9))), 0.3);
+}
+
+TEST(LidarAid, AFixThatComesBackIsAcceptedWithoutAJump) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (const double fix_sd_m : {0.02, 1.5}) {
+    OdometryRun run;
+    run.boat.turn_radps = DegToRad(-3.0);
+    run.fix_sd_m = fix_sd_m;
+    run.spoil = [&](double /*t*/, OdometryMotion& motion) {
+      motion.displacement_m += kWaySdM * Eigen::Vector2d(normal(random), normal(random));
+      motion.turn_rad += kTurnSdRad * normal(random);
+    };
+    const auto result = run.Sail();
+    auto counts = result.counts;
+    EXPECT_EQ(counts["gated_fix"], 0);
+    EXPECT_EQ(counts["gated_attitude"], 0);
+    EXPECT_EQ(counts["renewed_position"], 0);
+    EXPECT_EQ(result.At(71.0).status, PoseStatus::kOk);
+    const double back_m = (result.ErrorM(70.0) - result.ErrorM(69.9)).norm();
+    EXPECT_LT(back_m, 3.0 * std::hypot(SdM(result.At(69.9)), std::sqrt(result.At(69.9).covariance(1, 1))));
+    EXPECT_LT(result.ErrorM(75.0).norm(), 0.5);
+  }
+}
+
+// Increments are independent: the deviation grows with the root of their number, as the error does.
+TEST(LidarAid, StatesWhatTheErrorsOfTheMotionsAddUpTo) {
+  double nees = 0.0;
+  double heading_nees = 0.0;
+  constexpr int kRuns = 40;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    std::normal_distribution<double> normal;
+    OdometryRun run;
+    run.end_s = 40.0;
+    run.boat.turn_radps = DegToRad(2.0);
+    run.spoil = [&](double /*t*/, OdometryMotion& motion) {
+      // As the filter takes them at the least.
+      motion.displacement_m += std::hypot(0.03, 0.02 * motion.displacement_m.norm()) * Eigen::Vector2d(normal(random), normal(random));
+      motion.turn_rad += std::hypot(kTurnSdRad, 0.01 * motion.turn_rad) * normal(random);
+    };
+    const auto result = run.Sail();
+    const auto& pose = result.At(39.9);
+    const Eigen::Matrix2d covariance_m2 = pose.covariance.topLeftCorner<2, 2>();
+    nees += result.ErrorM(39.9).dot(covariance_m2.inverse() * result.ErrorM(39.9)) / 2.0 / kRuns;
+    heading_nees += std::pow(result.HeadingErrorRad(39.9), 2) / pose.covariance(8, 8) / kRuns;
+  }
+  EXPECT_GT(nees, 0.3);
+  EXPECT_LT(nees, 1.4);
+  EXPECT_GT(heading_nees, 0.3);
+  EXPECT_LT(heading_nees, 1.6);
+}
+
+TEST(LidarAid, AWrongMotionIsGatedAndTold) {
+  OdometryRun run;
+  run.gap_begin_s = run.gap_end_s = 100.0;  // no gap
+  run.end_s = 30.0;
+  // As if a ship that goes with the boat were the shore.
+  run.spoil = [](double t, OdometryMotion& motion) {
+    if (t > 10.0) motion.displacement_m.setZero();
+  };
+  const auto result = run.Sail();
+  auto counts = result.counts;
+  EXPECT_GT(counts["gated_odometry"], 100);
+  EXPECT_TRUE(result.contradicted);
+  for (double t = 5.0; t <= 30.0; t += kScanS) {
+    EXPECT_LT(result.ErrorM(t).norm(), 0.3) << t;
+    EXPECT_LT(std::abs(RadToDeg(result.HeadingErrorRad(t))), 1.0) << t;
+  }
+  EXPECT_EQ(counts["renewed_position"], 0);
+}
+
+// Errors that the gate lets pass: fixes and their velocities hold the boat.
+TEST(LidarAid, ALittleWrongMotionDoesNotLeadAwayFromFixes) {
+  for (const double share : {0.9, 0.7, 0.5}) {
+    OdometryRun run;
+    run.gap_begin_s = run.gap_end_s = 100.0;
+    run.end_s = 60.0;
+    run.spoil = [share](double t, OdometryMotion& motion) {
+      if (t > 10.0) motion.displacement_m *= share;
+    };
+    const auto result = run.Sail();
+    double greatest_m = 0.0;
+    for (double t = 5.0; t <= 60.0; t += kScanS) greatest_m = std::max(greatest_m, result.ErrorM(t).norm());
+    auto counts = result.counts;
+    EXPECT_LT(greatest_m, 0.3) << share;
+    EXPECT_EQ(counts["renewed_position"], 0) << share;
+  }
+}
+
+TEST(LidarAid, ATurnThatTheCompassContradictsIsGated) {
+  OdometryRun run;
+  run.gap_begin_s = run.gap_end_s = 100.0;
+  run.end_s = 30.0;
+  run.spoil = [](double t, OdometryMotion& motion) {
+    if (t > 10.0) motion.turn_rad += DegToRad(3.0);
+  };
+  const auto result = run.Sail();
+  auto counts = result.counts;
+  EXPECT_GT(counts["gated_odometry"], 100);
+  EXPECT_EQ(counts["renewed_attitude"], 0);
+  EXPECT_LT(std::abs(RadToDeg(result.HeadingErrorRad(30.0))), 1.0);
+}
+
+TEST(LidarAid, AnUnknownMotionChangesNothing) {
+  OdometryRun run;
+  run.gap_end_s = 40.0;
+  run.end_s = 45.0;
+  run.spoil = [](double t, OdometryMotion& motion) { motion.is_known = t < 10.0; };
+  const auto unknown = run.Sail();
+  run.has_odometry = false;
+  const auto without = run.Sail();
+  for (const double t : {12.0, 14.0, 30.0, 45.0}) EXPECT_EQ(unknown.At(t).status, without.At(t).status) << t;
+}
+
+// A motion counts from the end of the scan before alone: where that scan is missing, nothing is known of the place at its begin.
+TEST(LidarAid, AMotionWithoutTheOneBeforeItIsNotUsed) {
+  OdometryRun run;
+  run.spoil = [](double /*t*/, OdometryMotion& motion) { motion.begin += 1ms; };
+  const auto result = run.Sail();
+  EXPECT_FALSE(result.was_carried);
+  EXPECT_EQ(result.At(69.9).status, PoseStatus::kUnknown);
+}
+
+TEST(LidarAid, OrderOfArrivalDoesNotMatter) {
+  const ArcBoat boat{2.0, DegToRad(5.0)};
+  PoseFilter in_time(TestFilterParams());
+  PoseFilter late(TestFilterParams());
+  for (int i = 0; i <= 30; ++i) {
+    const double t = i * kScanS;
+    if (i <= 10) {
+      for (auto* filter : {&in_time, &late}) {
+        filter->Add(HeadingSample(t, RadToDeg(boat.HeadingRad(t))));
+        filter->Add(boat.FixAt(t, 0.02));
+      }
+    }
+    if (i > 0) in_time.Add(boat.Motion(t), NoonPlus(t));
+    if (i > 3) late.Add(boat.Motion((i - 3) * kScanS), NoonPlus(t));
+    in_time.At(NoonPlus(t));
+    late.At(NoonPlus(t));
+  }
+  for (const int i : {28, 29, 30}) late.Add(boat.Motion(i * kScanS), NoonPlus(3.0));
+  const auto expected = in_time.At(NoonPlus(3.02));
+  const auto pose = late.At(NoonPlus(3.02));
+  EXPECT_EQ(pose.status, PoseStatus::kCoasting);
+  EXPECT_EQ(pose.p_map_m, expected.p_map_m);
+  EXPECT_EQ(pose.heading_rad, expected.heading_rad);
+  EXPECT_EQ(pose.covariance(0, 0), expected.covariance(0, 0));
+}
+
+TEST(LidarAid, MotionsOfAnotherTimeAreRefused) {
+  const ArcBoat boat;
+  PoseFilter filter(TestFilterParams());
+  filter.Add(boat.FixAt(0.0, 0.02));
+  filter.Add(HeadingSample(0.0, 0.0));
+  filter.At(NoonPlus(0.0));
+  filter.Add(boat.Motion(1.0), NoonPlus(0.1));
+  filter.Add(boat.Motion(-60.0), NoonPlus(0.1));
+  auto counts = filter.counts();
+  EXPECT_EQ(counts["late_odometry"], 2);
+}
+
+// A compass that fails while fixes go on: the turn is told by the lidar.
+TEST(LidarAid, CarriesTheHeadingAloneWhereThereAreFixesAlone) {
+  const ArcBoat boat{0.5, DegToRad(4.0)};  // too slow for the course
+  PoseFilter filter(TestFilterParams());
+  for (int i = 0; i <= 400; ++i) {
+    const double t = i * kScanS;
+    if (i <= 50) filter.Add(HeadingSample(t, RadToDeg(boat.HeadingRad(t))));
+    if (i % 2 == 0) filter.Add(boat.FixAt(t, 0.5));
+    if (i > 0) filter.Add(boat.Motion(t), NoonPlus(t));
+    filter.At(NoonPlus(t));
+  }
+  const auto pose = filter.At(NoonPlus(40.0));
+  EXPECT_EQ(pose.status, PoseStatus::kCoasting);
+  EXPECT_NEAR(RadToDeg(WrapToPi(pose.heading_rad - boat.HeadingRad(40.0))), 0.0, 0.5);
+}
+
+}  // namespace
+}  // namespace lookout::navigator
