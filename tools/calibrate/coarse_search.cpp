@@ -67,7 +67,7 @@ std::vector<View> ViewsOf(const std::vector<odometer::Scan>& scans, const PoseTr
   for (std::size_t i = first; i < scans.size() && views.size() < kNumMoments; ++i) {
     const double wanted_s = static_cast<double>(views.size()) * kWindowS / kNumMoments;
     if (ToSeconds(scans[i].end_time - start) < wanted_s) continue;
-    const auto pose = track.At(scans[i].end_time, assumed.latency_s);
+    const auto pose = track.At(scans[i].end_time, assumed.latency);
     if (!pose) continue;
     View view;
     view.T_map_vessel = pose->T_map_vessel;

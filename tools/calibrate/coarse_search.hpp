@@ -13,9 +13,9 @@ namespace lookout::calibrate {
 
 struct CoarseResult {
   Eigen::Matrix3d R_vessel_lidar = Eigen::Matrix3d::Identity();
-  double share = 1.0;        // of cubes that the returns fill, against returns that fit nowhere: lower is sharper
-  double next_share = 1.0;   // the best of those that are turned against it by 45 deg or more
-  bool is_clear = false;     // the others are clearly less sharp
+  double share = 1.0;       // of cubes that the returns fill, against returns that fit nowhere: lower is sharper
+  double next_share = 1.0;  // the best of those that are turned against it by 45 deg or more
+  bool is_clear = false;    // the others are clearly less sharp
 };
 
 /// Looks at 24 moments of the 12 s in which the boat turns most, with 6 directions of the lidar's axis and 24 of yaw, and refines the best.

@@ -11,6 +11,7 @@ namespace {
 using Numbers = Correction::Numbers;
 using Normal = Eigen::Matrix<double, Correction::kNumNumbers, Correction::kNumNumbers>;
 constexpr int kLatency = 3;
+constexpr int kTiltLatency = 4;
 
 // Steps of the numerical derivative.
 constexpr double kStepRad = 1e-4;
@@ -32,7 +33,7 @@ Eigen::Matrix3d CrossOf(const Eigen::Vector3d& v) {
 
 Numbers StepsOf() {
   Numbers steps;
-  steps << kStepRad, kStepRad, kStepRad, kStepS, kStepM, kStepM, kStepM;
+  steps << kStepRad, kStepRad, kStepRad, kStepS, kStepS, kStepM, kStepM, kStepM;
   return steps;
 }
 
@@ -79,7 +80,8 @@ Numbers PriorInformation(const HandEyeParams& params) {
   Numbers information;
   const double place = 1.0 / (params.place_sd_m * params.place_sd_m);
   const double rotation = 1.0 / (kRotationSdRad * kRotationSdRad);
-  information << rotation, rotation, rotation, params.fits_latency ? 1.0 / (kLatencySdS * kLatencySdS) : 1e18, place, place, place;
+  const double latency = 1.0 / (kLatencySdS * kLatencySdS);
+  information << rotation, rotation, rotation, latency, latency, place, place, place;
   return information;
 }
 
@@ -93,7 +95,7 @@ Step Solve(const std::vector<const Row*>& rows, const Numbers& here, const HandE
   const Numbers prior = PriorInformation(params);
   // The latency's prior is about where it began, the others' about 0.
   Numbers about = here;
-  about[kLatency] = 0.0;
+  about[kLatency] = about[kTiltLatency] = 0.0;
   Step best;
   constexpr int kReweightings = 5;
   for (int i = 0; i < kReweightings; ++i) {
@@ -159,14 +161,14 @@ Numbers JackknifeSd(const std::vector<Row>& rows, const Numbers& here, const Han
 
 Correction::Numbers Correction::ToNumbers() const {
   Numbers numbers;
-  numbers << rotation_rad, latency_s, place_m;
+  numbers << rotation_rad, latency.heading_s, latency.tilt_s, place_m;
   return numbers;
 }
 
 Correction Correction::FromNumbers(const Numbers& numbers) {
   Correction correction;
   correction.rotation_rad = numbers.head<3>();
-  correction.latency_s = numbers[kLatency];
+  correction.latency = {numbers[kLatency], numbers[kTiltLatency]};
   correction.place_m = numbers.tail<3>();
   return correction;
 }
@@ -184,8 +186,8 @@ Eigen::Vector3d RotationVectorOf(const Eigen::Matrix3d& R) {
 
 std::optional<Vector6> Residual(const RelativeMotion& motion, const PoseTrack& track, const Eigen::Vector3d& p_vessel_lidar_m,
                                 const Correction& correction) {
-  const auto begin = track.At(motion.begin, correction.latency_s);
-  const auto end = track.At(motion.end, correction.latency_s);
+  const auto begin = track.At(motion.begin, correction.latency);
+  const auto end = track.At(motion.end, correction.latency);
   if (!begin || !end) return std::nullopt;
   // p_vessel = D p_assumed: turns about the lidar, and moves it.
   Eigen::Isometry3d D = Eigen::Isometry3d::Identity();
@@ -200,8 +202,8 @@ std::optional<Vector6> Residual(const RelativeMotion& motion, const PoseTrack& t
 
 Matrix6 ResidualCovariance(const RelativeMotion& motion, const PoseTrack& track, const Correction& correction) {
   Matrix6 covariance = motion.information.ldlt().solve(Matrix6::Identity());
-  const auto begin = track.At(motion.begin, correction.latency_s);
-  const auto end = track.At(motion.end, correction.latency_s);
+  const auto begin = track.At(motion.begin, correction.latency);
+  const auto end = track.At(motion.end, correction.latency);
   if (!begin || !end) return covariance;
   const Eigen::Matrix3d R_begin_map = begin->T_map_vessel.linear().transpose();
   Matrix6 to_begin = Matrix6::Zero();

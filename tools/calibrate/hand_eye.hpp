@@ -1,9 +1,9 @@
 // Mounting and latency out of relative motions: A X = X B. Pure.
 //
-// Between two moments i and j the lidar saw that it moved by A (vessel frame as it is assumed to be), and POSE says that the vessel moved by B. With the
-// right mounting both are one. The correction D of the mounting (p_vessel = D p_assumed) and the latency are those with which A = D^-1 B D, for all
-// pairs at once, by weighted least squares with Cauchy's function. Rotations show how the axes lie against each other: about the axis of a turn nothing, so
-// a turn shows roll and pitch, rolling and pitching in waves show yaw. Displacements show yaw by the direction of the way.
+// Between two moments i and j the lidar saw that it moved by A (vessel frame as it is assumed to be), and POSE says that the vessel moved by B. With
+// the right mounting both are one. The correction D of the mounting (p_vessel = D p_assumed) and the latency are those with which A = D^-1 B D, for
+// all pairs at once, by weighted least squares with Cauchy's function. Rotations show how the axes lie against each other: about the axis of a turn
+// nothing, so a turn shows roll and pitch, rolling and pitching in waves show yaw. Displacements show yaw by the direction of the way.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -29,13 +29,13 @@ struct RelativeMotion {
 };
 
 /// What is looked for: a small rotation of the assumed mounting (about the axes of the vessel), the place of the lidar against what boat.txtpb says
-/// (vessel frame), and the latency: POSE at (time of the scan + latency) is where the scan was taken.
+/// (vessel frame), and the latency.
 struct Correction {
   Eigen::Vector3d rotation_rad = Eigen::Vector3d::Zero();
-  double latency_s = 0.0;
+  Latency latency;
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero();
 
-  static constexpr int kNumNumbers = 7;
+  static constexpr int kNumNumbers = 8;
   using Numbers = Eigen::Matrix<double, kNumNumbers, 1>;  // in this order
   Numbers ToNumbers() const;
   static Correction FromNumbers(const Numbers& numbers);
@@ -48,8 +48,6 @@ struct HandEyeParams {
   int num_blocks = 12;
   /// Whether deviations are told: it takes as many fits as blocks.
   bool wants_deviations = true;
-  /// With false the latency stays as it is in the start.
-  bool fits_latency = true;
 };
 
 struct HandEyeResult {
@@ -58,14 +56,15 @@ struct HandEyeResult {
   Correction::Numbers sd = Correction::Numbers::Zero();
   Correction::Numbers formal_sd = Correction::Numbers::Zero();
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();  // of correction.rotation_rad, with these deviations
-  std::size_t num_pairs = 0;      // that were used: POSE is known at both ends
-  double displacement_rms_m = 0;  // of the residuals, each pair weighted as in the fit
+  std::size_t num_pairs = 0;                                      // that were used: POSE is known at both ends
+  double displacement_rms_m = 0;                                  // of the residuals, each pair weighted as in the fit
   double rotation_rms_rad = 0;
 };
 
-/// The difference between a motion that the lidar saw and what POSE says with this correction: displacement (m), rotation (rad), along the axes of the
-/// vessel at the begin. nullopt where POSE is not known at both ends.
-std::optional<Vector6> Residual(const RelativeMotion& motion, const PoseTrack& track, const Eigen::Vector3d& p_vessel_lidar_m, const Correction& correction);
+/// The difference between a motion that the lidar saw and what POSE says with this correction: displacement (m), rotation (rad), along the axes of
+/// the vessel at the begin. nullopt where POSE is not known at both ends.
+std::optional<Vector6> Residual(const RelativeMotion& motion, const PoseTrack& track, const Eigen::Vector3d& p_vessel_lidar_m,
+                                const Correction& correction);
 
 /// Covariance of the residual: of the registration and of both poses.
 Matrix6 ResidualCovariance(const RelativeMotion& motion, const PoseTrack& track, const Correction& correction);

@@ -66,9 +66,11 @@ std::string TurnInWords(const Eigen::Matrix3d& turned) {
   if (turned(2, 2) > 0.5) {  // about up
     const double yaw_deg = RadToDeg(std::atan2(turned(1, 0), turned(0, 0)));
     if (std::abs(yaw_deg) > 135.0) return "turned by 180 deg about up: what counts as ahead is astern";
-    return yaw_deg > 0.0 ? "turned by 90 deg to port: what counts as ahead is to port" : "turned by 90 deg to starboard: what counts as ahead is to starboard";
+    return yaw_deg > 0.0 ? "turned by 90 deg to port: what counts as ahead is to port"
+                         : "turned by 90 deg to starboard: what counts as ahead is to starboard";
   }
-  const std::string axes = std::string("what counts as ahead is ") + DirectionOf(turned.col(0)) + ", what counts as up is " + DirectionOf(turned.col(2));
+  const std::string axes =
+      std::string("what counts as ahead is ") + DirectionOf(turned.col(0)) + ", what counts as up is " + DirectionOf(turned.col(2));
   if (turned(2, 2) < -0.5) return "upside down: " + axes;
   if (turned(0, 0) > 0.5) return "rolled by 90 deg: " + axes;
   if (turned(1, 1) > 0.5) return "pitched by 90 deg: " + axes;

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "common/core/angles.hpp"
+#include "common/core/frames.hpp"
 
 namespace lookout::calibrate {
 
@@ -32,6 +33,17 @@ std::optional<TrackPose> PoseTrack::At(Utime time, double later_s) const {
   const Eigen::Quaterniond to(after->T_map_vessel.linear());
   pose.T_map_vessel.linear() = from.slerp(share, to).toRotationMatrix();
   pose.heave_m = (1.0 - share) * before->heave_m + share * after->heave_m;
+  return pose;
+}
+
+std::optional<TrackPose> PoseTrack::At(Utime time, const Latency& latency) const {
+  auto pose = At(time, latency.heading_s);
+  if (!pose || latency.heading_s == latency.tilt_s) return pose;
+  const auto tilted = At(time, latency.tilt_s);
+  if (!tilted) return std::nullopt;
+  const double turn_rad = HeadingOf(tilted->T_map_vessel) - HeadingOf(pose->T_map_vessel);
+  pose->T_map_vessel.linear() = RotationAboutZ(turn_rad) * tilted->T_map_vessel.linear();
+  pose->heave_m = tilted->heave_m;
   return pose;
 }
 

@@ -18,6 +18,13 @@ struct TrackPose {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
+/// How late POSE is: what was so at a time stands in POSE so much later. Heading and position have one, roll and pitch another: they may come of
+/// different sensors.
+struct Latency {
+  double heading_s = 0.0;
+  double tilt_s = 0.0;
+};
+
 class PoseTrack {
  public:
   /// Between poses farther apart nothing is known.
@@ -29,6 +36,9 @@ class PoseTrack {
   /// Linear between the neighbours; nullopt outside and in gaps.
   /// @param later_s  is added to `time`
   std::optional<TrackPose> At(Utime time, double later_s) const;
+
+  /// The vessel as it was at `time`.
+  std::optional<TrackPose> At(Utime time, const Latency& latency) const;
 
   bool empty() const { return poses_.empty(); }
   const std::vector<TrackPose>& poses() const { return poses_; }

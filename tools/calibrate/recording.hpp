@@ -23,7 +23,7 @@ struct Recording {
 };
 
 struct Stretch {
-  double begin_s = 0.0;      // after the first scan
+  double begin_s = 0.0;  // after the first scan
   double seconds = 300.0;
 };
 

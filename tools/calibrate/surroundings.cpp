@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMapSampleM = 0.5;
 constexpr double kSampleM = 1.0;
-constexpr std::size_t kMaxSample = 600;
+constexpr std::size_t kMaxSample = 400;
 // A pair counts where so many returns of the one fit what the other saw, and they are so large a part of those near something.
 constexpr int kLeastMatched = 60;
 constexpr double kLeastShareOfNear = 0.5;
@@ -59,7 +59,7 @@ class MotionFinder {
       for (const auto lag : params_.lags) {
         const std::size_t end = begin + lag * params_.key_scans;
         if (end < scans_.size()) AddMotion(begin, end, origin_m, map, motions);
-        if (begin >= lag * params_.key_scans) AddMotion(begin, begin - lag * params_.key_scans, origin_m, map, motions);
+        if (params_.both_ways && begin >= lag * params_.key_scans) AddMotion(begin, begin - lag * params_.key_scans, origin_m, map, motions);
       }
     }
     return motions;
@@ -72,7 +72,7 @@ class MotionFinder {
     for (std::size_t i = 0; i < scans_.size(); ++i) {
       const std::size_t from_key = i % params_.key_scans;
       if (std::min(from_key, params_.key_scans - from_key) > params_.half_scans) continue;
-      const auto pose = track_.At(scans_[i].end_time, assumed_.latency_s);
+      const auto pose = track_.At(scans_[i].end_time, assumed_.latency);
       if (!pose) continue;
       Moment moment;
       moment.T_map_vessel = pose->T_map_vessel;
@@ -128,8 +128,8 @@ class MotionFinder {
 
 std::vector<odometer::MapPoint> StandingIn(const odometer::Scan& scan, const PoseTrack& track, const Assumed& assumed) {
   std::vector<odometer::MapPoint> straightened;
-  const auto begin = track.At(scan.time, assumed.latency_s);
-  const auto end = track.At(scan.end_time, assumed.latency_s);
+  const auto begin = track.At(scan.time, assumed.latency);
+  const auto end = track.At(scan.end_time, assumed.latency);
   if (!begin || !end) return straightened;
   odometer::StandingParams params;
   params.min_range_m = assumed.min_range_m;
