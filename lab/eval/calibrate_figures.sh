@@ -32,7 +32,7 @@ boat() {
 # record SCENE SEED SECONDS SHIFT
 record() {
   rm -f "$work/run.pcap"
-  "$bin/lookout-sim" --config config/demo --scene "$1" --seed "$2" --seconds "$3" --pcap "$work/run.pcap" --fault "wrong_stamp:0:100000:$4" >"$work/sim" 2>&1 ||
+  "$bin/lookout-sim" --config config/demo --scene "$1" --seed "$2" --seconds "$3" --pcap "$work/run.pcap" --fault "wrong_stamp:0:86400:$4" >"$work/sim" 2>&1 ||
     { cat "$work/sim" >&2; exit 1; }
 }
 

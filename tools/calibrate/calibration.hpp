@@ -67,6 +67,7 @@ struct Calibration {
 
   // What the last fit was made of, for checks by other programs.
   std::vector<RelativeMotion> motions;
+  std::vector<Matrix6> weights;   // [motions]
   Correction motions_correction;  // of the mounting with which they were looked at
   Eigen::Matrix3d motions_R_vessel_lidar = Eigen::Matrix3d::Identity();
 

@@ -2,7 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace lookout::calibrate {
 
@@ -18,18 +20,14 @@ constexpr double kStepRad = 1e-4;
 constexpr double kStepS = 1e-3;
 constexpr double kStepM = 1e-3;
 constexpr int kMaxIterations = 20;
+// Weights are told by the residuals of the first so many steps.
+constexpr int kWeighings = 4;
 // Cauchy's scale, in deviations of a pair (root of its squares over 6): what is farther off counts for less.
 constexpr double kCauchy = 2.0;
 constexpr std::size_t kLeastMotions = 10;
 // No deviation of the latency is known before anything is seen; it holds an unobservable one where it was.
 constexpr double kLatencySdS = 0.3;
 constexpr double kRotationSdRad = 0.5;
-
-Eigen::Matrix3d CrossOf(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return matrix;
-}
 
 Numbers StepsOf() {
   Numbers steps;
@@ -41,10 +39,23 @@ Numbers StepsOf() {
 struct Row {
   Vector6 residual = Vector6::Zero();
   Eigen::Matrix<double, 6, Correction::kNumNumbers> jacobian = Eigen::Matrix<double, 6, Correction::kNumNumbers>::Zero();
+  Matrix6 registration = Matrix6::Zero();  // covariance of what the lidar saw
   Matrix6 weight = Matrix6::Zero();
+  std::size_t lag = 0;  // group of pairs that are as far apart in time
   Utime begin;
   Utime end;
 };
+
+// Pairs 1, 2, 4, 8 ... seconds apart: 0, 1, 2, 3 ...
+constexpr std::size_t kNumLags = 12;
+std::size_t LagOf(const RelativeMotion& motion) {
+  const double apart_s = std::abs(ToSeconds(motion.end - motion.begin));
+  return static_cast<std::size_t>(std::clamp(std::log2(std::max(apart_s, 1e-3)) + 0.5, 0.0, static_cast<double>(kNumLags - 1)));
+}
+
+// Variances of the change of POSE over a lag: displacement (m2), rotation (rad2). The covariances of two poses do not tell them: their errors are
+// nearly the same where the poses are near in time.
+using Variances = std::array<Vector6, kNumLags>;
 
 std::optional<Row> Linearised(const RelativeMotion& motion, const PoseTrack& track, const Eigen::Vector3d& p_vessel_lidar_m, const Correction& at) {
   const auto residual = Residual(motion, track, p_vessel_lidar_m, at);
@@ -65,8 +76,66 @@ std::optional<Row> Linearised(const RelativeMotion& motion, const PoseTrack& tra
     if (!above || !below) return std::nullopt;
     row.jacobian.col(k) = (*above - *below) / (2.0 * steps[k]);
   }
-  row.weight = ResidualCovariance(motion, track, at).ldlt().solve(Matrix6::Identity());
+  row.registration = motion.information.ldlt().solve(Matrix6::Identity());
+  row.lag = LagOf(motion);
   return row;
+}
+
+void SetWeights(const Variances& variances, std::vector<Row>& rows) {
+  for (auto& row : rows) {
+    Matrix6 covariance = row.registration;
+    covariance.diagonal() += variances.at(row.lag);
+    row.weight = covariance.ldlt().solve(Matrix6::Identity());
+  }
+}
+
+double MedianOf(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// What the residuals of a lag tell, less what the registration explains. Of few pairs: what was said before.
+Variances VariancesOf(const std::vector<Row>& rows, const Variances& before) {
+  constexpr std::size_t kLeastOfLag = 10;
+  // Median of the square of a normal number.
+  constexpr double kMedianSquare = 0.4549;
+  // A pose is not known better than this against another.
+  constexpr double kLeastM2 = 0.005 * 0.005;
+  constexpr double kLeastRad2 = 1e-4 * 1e-4;
+  Variances variances = before;
+  for (std::size_t lag = 0; lag < kNumLags; ++lag) {
+    for (int i = 0; i < 6; ++i) {
+      std::vector<double> squares;
+      std::vector<double> explained;
+      for (const auto& row : rows) {
+        if (row.lag != lag) continue;
+        squares.push_back(row.residual[i] * row.residual[i]);
+        explained.push_back(row.registration(i, i));
+      }
+      if (squares.size() < kLeastOfLag) continue;
+      variances.at(lag)[i] = std::max(i < 3 ? kLeastM2 : kLeastRad2, MedianOf(std::move(squares)) / kMedianSquare - MedianOf(std::move(explained)));
+    }
+  }
+  return variances;
+}
+
+// Before the residuals are known: what two poses say that know nothing of each other.
+Variances FirstVariances(const std::vector<RelativeMotion>& motions, const PoseTrack& track, const Correction& start) {
+  std::array<std::array<std::vector<double>, 6>, kNumLags> of_lags;
+  for (const auto& motion : motions) {
+    const auto begin = track.At(motion.begin, start.latency);
+    const auto end = track.At(motion.end, start.latency);
+    if (!begin || !end) continue;
+    const Vector6 sum = begin->covariance.diagonal() + end->covariance.diagonal();
+    for (std::size_t i = 0; i < 6; ++i) of_lags.at(LagOf(motion)).at(i).push_back(sum[static_cast<Eigen::Index>(i)]);
+  }
+  Variances variances;
+  for (std::size_t lag = 0; lag < kNumLags; ++lag) {
+    for (std::size_t i = 0; i < 6; ++i) variances.at(lag)[static_cast<Eigen::Index>(i)] = MedianOf(of_lags.at(lag).at(i));
+  }
+  return variances;
 }
 
 double SquaresOf(const Row& row, const Numbers& step) {
@@ -200,28 +269,13 @@ std::optional<Vector6> Residual(const RelativeMotion& motion, const PoseTrack& t
   return residual;
 }
 
-Matrix6 ResidualCovariance(const RelativeMotion& motion, const PoseTrack& track, const Correction& correction) {
-  Matrix6 covariance = motion.information.ldlt().solve(Matrix6::Identity());
-  const auto begin = track.At(motion.begin, correction.latency);
-  const auto end = track.At(motion.end, correction.latency);
-  if (!begin || !end) return covariance;
-  const Eigen::Matrix3d R_begin_map = begin->T_map_vessel.linear().transpose();
-  Matrix6 to_begin = Matrix6::Zero();
-  to_begin.topLeftCorner<3, 3>() = to_begin.bottomRightCorner<3, 3>() = R_begin_map;
-  // An error of rotation at the begin moves the end, too.
-  const Eigen::Vector3d way_m = end->T_map_vessel.translation() - begin->T_map_vessel.translation();
-  Matrix6 of_begin = Matrix6::Identity();
-  of_begin.topRightCorner<3, 3>() = -CrossOf(way_m);
-  covariance += to_begin * (of_begin * begin->covariance * of_begin.transpose() + end->covariance) * to_begin.transpose();
-  return covariance;
-}
-
 std::optional<HandEyeResult> SolveHandEye(const std::vector<RelativeMotion>& motions, const PoseTrack& track, const Eigen::Vector3d& p_vessel_lidar_m,
                                           const Correction& start, const HandEyeParams& params) {
   HandEyeResult result;
   result.correction = start;
   std::vector<Row> rows;
   Normal information = Normal::Identity();
+  Variances variances = FirstVariances(motions, track, start);
   for (int i = 0; i < kMaxIterations; ++i) {
     rows.clear();
     rows.reserve(motions.size());
@@ -229,6 +283,8 @@ std::optional<HandEyeResult> SolveHandEye(const std::vector<RelativeMotion>& mot
       if (const auto row = Linearised(motion, track, p_vessel_lidar_m, result.correction)) rows.push_back(*row);
     }
     if (rows.size() < kLeastMotions) return std::nullopt;
+    if (i > 0 && i <= kWeighings) variances = VariancesOf(rows, variances);
+    SetWeights(variances, rows);
     std::vector<const Row*> all;
     all.reserve(rows.size());
     for (const auto& row : rows) all.push_back(&row);
@@ -237,9 +293,14 @@ std::optional<HandEyeResult> SolveHandEye(const std::vector<RelativeMotion>& mot
     information = of_step;
     result.correction = Correction::FromNumbers(here + step);
     constexpr double kStill = 1e-6;
-    if (step.cwiseAbs().maxCoeff() < kStill) break;
+    if (i > kWeighings && step.cwiseAbs().maxCoeff() < kStill) break;
   }
   result.num_pairs = rows.size();
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    Matrix6 covariance = motions[i].information.ldlt().solve(Matrix6::Identity());
+    covariance.diagonal() += variances.at(LagOf(motions[i]));
+    result.weights.emplace_back(covariance.ldlt().solve(Matrix6::Identity()));
+  }
   double weights = 0.0;
   for (const auto& row : rows) {
     const double weight = RobustWeight(SquaresOf(row, Numbers::Zero()));

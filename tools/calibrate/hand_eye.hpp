@@ -56,6 +56,7 @@ struct HandEyeResult {
   Correction::Numbers sd = Correction::Numbers::Zero();
   Correction::Numbers formal_sd = Correction::Numbers::Zero();
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();  // of correction.rotation_rad, with these deviations
+  std::vector<Matrix6> weights;                                   // [motions] of the residuals: inverse of the covariance of registration and POSE
   std::size_t num_pairs = 0;                                      // that were used: POSE is known at both ends
   double displacement_rms_m = 0;                                  // of the residuals, each pair weighted as in the fit
   double rotation_rms_rad = 0;
@@ -65,9 +66,6 @@ struct HandEyeResult {
 /// the vessel at the begin. nullopt where POSE is not known at both ends.
 std::optional<Vector6> Residual(const RelativeMotion& motion, const PoseTrack& track, const Eigen::Vector3d& p_vessel_lidar_m,
                                 const Correction& correction);
-
-/// Covariance of the residual: of the registration and of both poses.
-Matrix6 ResidualCovariance(const RelativeMotion& motion, const PoseTrack& track, const Correction& correction);
 
 /// @param p_vessel_lidar_m  of boat.txtpb: the mounting turns about it
 /// @return nullopt where fewer than 10 motions can be used

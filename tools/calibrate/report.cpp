@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "common/core/angles.hpp"
@@ -117,10 +116,11 @@ std::string PairsCsv(const Calibration& calibration, const PoseTrack& track) {
   text += "\n";
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
   if (!track.empty()) origin.translation() = -track.poses().front().T_map_vessel.translation();
-  for (const auto& motion : calibration.motions) {
+  for (std::size_t number = 0; number < calibration.weights.size(); ++number) {
+    const auto& motion = calibration.motions[number];
     std::string row = fmt::format("{},{}", ToUtimeUs(motion.begin), ToUtimeUs(motion.end));
     AppendTransform(motion.T_begin_end, row);
-    const Matrix6 weight = ResidualCovariance(motion, track, calibration.motions_correction).ldlt().solve(Matrix6::Identity());
+    const auto& weight = calibration.weights[number];
     for (int i = 0; i < 6; ++i) {
       for (int k = 0; k < 6; ++k) row += fmt::format(",{:.9g}", weight(i, k));
     }

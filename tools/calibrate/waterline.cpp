@@ -25,7 +25,8 @@ constexpr double kNearlyMost = 0.97;
 constexpr std::size_t kLeastFeet = 500;
 constexpr std::size_t kNumParts = 8;
 constexpr std::size_t kLeastParts = 5;
-constexpr double kLeastSdM = 0.01;
+// Banks that lean, fenders, and the width of the beam.
+constexpr double kLeastSdM = 0.03;
 
 // The lidar is between so high above the water.
 struct Foot {
