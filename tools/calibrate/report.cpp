@@ -100,7 +100,11 @@ void AppendTransform(const Eigen::Isometry3d& T, std::string& row) {
 }  // namespace
 
 std::string PairsCsv(const Calibration& calibration, const PoseTrack& track) {
-  std::string text = "begin_utime_us,end_utime_us";
+  const auto numbers = calibration.motions_correction.ToNumbers();
+  std::string text = "# found";
+  for (int i = 0; i < Correction::kNumNumbers; ++i) text += fmt::format(" {:.9g}", numbers[i]);
+  const auto& place_m = calibration.boat_place_m;
+  text += fmt::format("\n# lidar {:.9g} {:.9g} {:.9g}\nbegin_utime_us,end_utime_us", place_m.x(), place_m.y(), place_m.z());
   const auto add_names = [&text](const char* name, int rows, int columns) {
     for (int i = 0; i < rows; ++i) {
       for (int k = 0; k < columns; ++k) text += fmt::format(",{}_{}{}", name, i, k);
