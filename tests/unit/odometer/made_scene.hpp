@@ -47,7 +47,10 @@ constexpr double kScanS = 0.1;
 constexpr int kNumColumns = 900;
 
 /// Scan `number` (from 0), each shot at its own time.
-inline Scan MakeScan(int number, const std::vector<Wall>& walls, const Arc& arc) {
+///
+/// @param arc  an Arc, or another way with BearingRad and PlaceM
+template <typename Way>
+Scan MakeScan(int number, const std::vector<Wall>& walls, const Way& arc) {
   Scan scan;
   const double begin_s = number * kScanS;
   scan.time = Utime(std::chrono::microseconds(1'700'000'000'000'000 + static_cast<std::int64_t>(number) * 100'000));

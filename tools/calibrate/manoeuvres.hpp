@@ -1,0 +1,16 @@
+// What the boat did while it was recorded, and what it should do besides.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/calibrate/calibration.hpp"
+
+namespace lookout::calibrate {
+
+Manoeuvres ManoeuvresOf(const Recording& recording, const std::vector<odometer::Motion>& motions);
+
+/// Motions that would show what is not shown yet, in words for whoever steers.
+std::vector<std::string> MissingMotions(const Calibration& calibration);
+
+}  // namespace lookout::calibrate
