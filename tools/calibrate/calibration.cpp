@@ -211,9 +211,10 @@ Calibration Calibrate(const Recording& recording, const CalibrationParams& param
     HandEyeParams hand_eye;
     hand_eye.wants_deviations = pass + 1 == kNumPasses;
     fit = result.motions.size() < kLeastPairs ? std::nullopt : SolveHandEye(result.motions, recording.track, p_lidar_m, start, hand_eye);
-    if (!fit)
+    if (!fit) {
       return refuse(fmt::format("too little that stands is seen from more than one place: {} pairs of scans fit, {} are needed",
                                 result.motions.size(), kLeastPairs));
+    }
     result.motions_correction = fit->correction;
     result.weights = fit->weights;
     assumed.T_vessel_lidar.linear() = RotationBy(fit->correction.rotation_rad) * assumed.T_vessel_lidar.linear();
