@@ -68,12 +68,15 @@ def main():
         end = pose("end", x[3] - found[3], x[4] - found[4])
         expected = product(inverse(*D), product(product(inverse(*begin), end), D))
         rest = np.hstack([seen[1] - expected[1], (seen[0] * expected[0].inv()).as_rotvec()])
-        pairs = np.sqrt(np.einsum("nij,nj->ni", roots, rest).__pow__(2).sum(axis=1) / 6.0 + 1e-12)
-        return np.hstack([pairs, x / PRIOR_SD / np.sqrt(6.0)])
+        white = np.einsum("nij,nj->ni", roots, rest)
+        # Cauchy's function of a pair as a whole, as the factor that makes its squares so large.
+        squares = (white**2).sum(axis=1) / 6.0 + 1e-12
+        white *= np.sqrt(CAUCHY**2 * np.log1p(squares / CAUCHY**2) / squares)[:, None]
+        return np.hstack([white.ravel(), x / PRIOR_SD])
 
     start = np.zeros(8)
     start[3:5] = found[3:5] + 0.003
-    fit = least_squares(residuals, start, loss="cauchy", f_scale=CAUCHY, x_scale=np.array([1e-3] * 3 + [1e-3] * 2 + [1e-2] * 3), xtol=1e-10, ftol=1e-12)
+    fit = least_squares(residuals, start, x_scale=np.array([1e-3] * 3 + [1e-3] * 2 + [1e-2] * 3), xtol=1e-10, ftol=1e-12)
     off = fit.x - found
     print(f"{len(seen[1])} pairs; scipy against lookout-calibrate: rotation {np.degrees(off[:3]).round(5)} deg, latency {(1e3 * off[3:5]).round(4)} ms, "
           f"place {(1e3 * off[5:]).round(3)} mm")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/core/angles.hpp"
 #include "tools/calibrate/coarse_search.hpp"
@@ -74,8 +75,8 @@ PairParams PairsOfPass(int pass) {
 
 // What the residuals do not tell, since it is the same in all of them: edges that look wider from afar, hulls that lean. By seeds 1 and 2 of the
 // simulator.
-const double kSystematicYawRad = DegToRad(0.03);
-const double kSystematicTiltRad = DegToRad(0.01);
+const double kSystematicYawRad = DegToRad(0.05);
+const double kSystematicTiltRad = DegToRad(0.03);
 constexpr double kSystematicLatencyS = 0.0007;
 constexpr double kSystematicTiltLatencyS = 0.005;
 
@@ -97,30 +98,34 @@ Eigen::Vector3d AngleSds(const Eigen::Matrix3d& R_vessel_lidar, const Eigen::Mat
   return (jacobian * rotation_covariance * jacobian.transpose()).diagonal().cwiseSqrt();
 }
 
-// Root mean square of what pairs disagree by with a correction, each pair at most that of a pair that does not fit at all.
-void DisagreementOf(const Calibration& calibration, const PoseTrack& track, const Eigen::Vector3d& p_lidar_m, const Correction& correction,
-                    double& rms_m, double& rms_rad) {
-  double squares_m2 = 0.0;
-  double squares_rad2 = 0.0;
-  double num = 0.0;
-  std::vector<double> of_pairs_m;
-  std::vector<double> of_pairs_rad;
-  for (const auto& motion : calibration.motions) {
+struct Disagreement {
+  double rms_m = 0.0;
+  double rms_rad = 0.0;
+};
+
+// Root of the mean of the squares, without the worst twentieth: pairs that were registered wrongly.
+double RootMeanSquare(std::vector<double> squares) {
+  std::ranges::sort(squares);
+  squares.resize(squares.size() * 19 / 20);
+  double sum = 0.0;
+  for (const double square : squares) sum += square;
+  return std::sqrt(sum / std::max(1.0, static_cast<double>(squares.size())));
+}
+
+// What pairs disagree by with a correction.
+Disagreement DisagreementOf(const std::vector<RelativeMotion>& motions, const PoseTrack& track, const Eigen::Vector3d& p_lidar_m,
+                            const Correction& correction) {
+  std::vector<double> squares_m2;
+  std::vector<double> squares_rad2;
+  squares_m2.reserve(motions.size());
+  squares_rad2.reserve(motions.size());
+  for (const auto& motion : motions) {
     const auto residual = Residual(motion, track, p_lidar_m, correction);
     if (!residual) continue;
-    of_pairs_m.push_back(residual->head<3>().squaredNorm());
-    of_pairs_rad.push_back(residual->tail<3>().squaredNorm());
+    squares_m2.push_back(residual->head<3>().squaredNorm());
+    squares_rad2.push_back(residual->tail<3>().squaredNorm());
   }
-  // Without the worst twentieth: pairs that were registered wrongly.
-  std::ranges::sort(of_pairs_m);
-  std::ranges::sort(of_pairs_rad);
-  for (std::size_t i = 0; i < of_pairs_m.size() * 19 / 20; ++i) {
-    squares_m2 += of_pairs_m[i];
-    squares_rad2 += of_pairs_rad[i];
-    num += 1.0;
-  }
-  rms_m = std::sqrt(squares_m2 / std::max(num, 1.0));
-  rms_rad = std::sqrt(squares_rad2 / std::max(num, 1.0));
+  return {RootMeanSquare(std::move(squares_m2)), RootMeanSquare(std::move(squares_rad2))};
 }
 
 void Conclude(const Recording& recording, const CalibrationParams& params, const HandEyeResult& fit, Calibration& result) {
@@ -141,10 +146,14 @@ void Conclude(const Recording& recording, const CalibrationParams& params, const
   result.yaw = FoundOf(result.angles.yaw_rad, sds[2], kSystematicYawRad, DegToRad(kMaxYawSdDeg));
   result.latency = FoundOf(fit.correction.latency.heading_s, fit.sd[3], kSystematicLatencyS, kMaxLatencySdS);
   result.tilt_latency = FoundOf(fit.correction.latency.tilt_s, fit.sd[4], kSystematicTiltLatencyS, kMaxLatencySdS);
-  DisagreementOf(result, recording.track, p_lidar_m, result.motions_correction, result.after_m, result.after_rad);
+  const auto after = DisagreementOf(result.motions, recording.track, p_lidar_m, result.motions_correction);
+  result.after_m = after.rms_m;
+  result.after_rad = after.rms_rad;
   Correction of_boat;
   of_boat.rotation_rad = RotationVectorOf(params.boat.T_vessel_lidar.linear() * result.motions_R_vessel_lidar.transpose());
-  DisagreementOf(result, recording.track, p_lidar_m, of_boat, result.before_m, result.before_rad);
+  const auto before = DisagreementOf(result.motions, recording.track, p_lidar_m, of_boat);
+  result.before_m = before.rms_m;
+  result.before_rad = before.rms_rad;
   result.height = HeightAboveWater(recording.scans, recording.track, result.found);
   if (result.after_m > kMostAfterM || result.after_rad > kMostAfterRad) {
     result.refusal =
@@ -202,9 +211,10 @@ Calibration Calibrate(const Recording& recording, const CalibrationParams& param
     HandEyeParams hand_eye;
     hand_eye.wants_deviations = pass + 1 == kNumPasses;
     fit = result.motions.size() < kLeastPairs ? std::nullopt : SolveHandEye(result.motions, recording.track, p_lidar_m, start, hand_eye);
-    if (!fit)
+    if (!fit) {
       return refuse(fmt::format("too little that stands is seen from more than one place: {} pairs of scans fit, {} are needed",
                                 result.motions.size(), kLeastPairs));
+    }
     result.motions_correction = fit->correction;
     result.weights = fit->weights;
     assumed.T_vessel_lidar.linear() = RotationBy(fit->correction.rotation_rad) * assumed.T_vessel_lidar.linear();

@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -74,20 +76,36 @@ Options ParseOptions(int argc, char** argv) {
   return options;
 }
 
-void WriteFile(const fs::path& file, const std::string& text, const Options& options) {
-  lookout::io::OutputFile output(file, {.force = options.force, .inputs = options.inputs});
-  output.Write(text);
-  output.Commit();
+using Output = std::optional<lookout::io::OutputFile>;
+
+// Opened before all work: what cannot be written is told at once.
+void Open(const fs::path& file, const Options& options, Output& output) {
+  if (!file.empty()) output.emplace(file, lookout::io::OutputOptions{.force = options.force, .inputs = options.inputs});
+}
+
+void Finish(Output& output, const std::string& text) {
+  if (!output) return;
+  output->Write(text);
+  output->Commit();
 }
 
 // @return whether the mounting was found
 bool Run(const Options& options) {
   const calibrate::CalibrationParams params{lookout::config::LoadBoat(options.config_folder), lookout::odometer::LoadParams(options.config_folder)};
+  const auto old = options.config_folder / "boat.txtpb.old";
+  if (options.writes && fs::exists(old))
+    throw std::runtime_error(old.string() + ": exists already; move it away, then --write keeps the present file there");
+  Output picture;
+  Output pairs;
+  Open(options.picture, options, picture);
+  Open(options.pairs, options, pairs);
   const auto recording = calibrate::ReadRecording(options.config_folder, options.inputs, options.stretch);
   const auto calibration = calibrate::Calibrate(recording, params, [](const std::string& step) { spdlog::info("{}", step); });
   fmt::print("{}", options.prints_figures ? calibrate::FiguresOf(calibration) : calibrate::ReportOf(calibration, params.boat));
-  if (!options.picture.empty() && calibration.has_fit) WriteFile(options.picture, calibrate::PictureOf(recording, calibration, params), options);
-  if (!options.pairs.empty()) WriteFile(options.pairs, calibrate::PairsCsv(calibration, recording.track), options);
+  if (calibration.has_fit) {
+    if (picture) Finish(picture, calibrate::PictureOf(recording, calibration, params));
+    if (pairs) Finish(pairs, calibrate::PairsCsv(calibration, recording.track));
+  }
   if (calibration.IsRefused()) {
     if (options.prints_figures) spdlog::error("refused: {}", calibration.refusal);
     return false;

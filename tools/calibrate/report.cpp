@@ -35,9 +35,10 @@ std::string LatencyRow(const char* name, const char* what, const Found& found) {
 
 std::string HeightRow(const Calibration& calibration, const config::BoatFacts& boat) {
   const double said_m = boat.T_vessel_lidar.translation().z() + boat.reference_point_above_water_m;
-  if (!calibration.height)
+  if (!calibration.height) {
     return "  height  not found: too few upright faces whose feet are seen (quay, walls, hulls); boat.txtpb says " +
            fmt::format("{:.2f} m\n", said_m);
+  }
   const auto& height = *calibration.height;
   std::string text = fmt::format(
       "  height  {:.2f} m of the lidar above the water, deviation {:.2f}; boat.txtpb says {:.2f} m (z_m + reference_point_above_water_m)\n",

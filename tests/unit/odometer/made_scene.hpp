@@ -49,7 +49,7 @@ constexpr int kNumColumns = 900;
 /// Scan `number` (from 0), each shot at its own time.
 ///
 /// @param arc  an Arc, or another way with BearingRad and PlaceM
-template <typename Way>
+template <typename Way = Arc>
 Scan MakeScan(int number, const std::vector<Wall>& walls, const Way& arc) {
   Scan scan;
   const double begin_s = number * kScanS;
