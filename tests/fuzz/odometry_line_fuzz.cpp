@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Navigator navigator(params);
   PoseFilter filter(params.filter);
   double time_s = 0.0;
-  navigator.Consume({NoonPlus(0.0), 0, ItemKind::kStart});
+  navigator.Consume({NoonPlus(0.0), 0, ItemKind::kStart, {}, {}});
   std::int64_t seq = 1;
   for (const auto& line : SplitDatagram({data, size}).lines) {
     time_s += 0.1;
