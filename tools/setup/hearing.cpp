@@ -154,7 +154,9 @@ Heard ReadRecordings(const std::vector<std::filesystem::path>& files) {
 }
 
 std::vector<std::string> InWords(const Heard& heard) {
+  constexpr std::size_t kMostLacking = 4;
   std::vector<std::string> lines;
+  lines.reserve(heard.lidars.size() + heard.unread.size() + heard.nmea.size() + heard.faults.size() + kMostLacking);
   for (const auto& speaker : heard.lidars) lines.push_back(LidarInWords(speaker, heard.is_recording));
   for (const auto& name : heard.unread) lines.push_back("lidar: " + name + ", whose packets are not read");
   bool has_position = false;

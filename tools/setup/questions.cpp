@@ -204,6 +204,7 @@ bool AskOne(const Question& question, const std::string& head, const Heard& hear
 
 std::vector<Question> QuestionsFor(const Heard& heard) {
   std::vector<Question> questions{Name(), Hull()};
+  questions.reserve(kMostQuestions);
   if (heard.lidars.empty()) questions.push_back(LidarModel());
   if (heard.lidars.size() > 1) questions.push_back(WhichLidar(heard));
   for (auto* question : {LidarAt, LidarFaces, LidarLeans, AntennaAt}) questions.push_back(question());

@@ -101,7 +101,7 @@ TEST_F(Vlp16Params, GiveTheirFaultsToWhoHasMoreToCheck) {
 }
 
 TEST_F(Vlp16Params, StopTheStartWhenTheyAreWrong) {
-  EXPECT_NE(FaultOf("source: UDP cut_azimuth_deg: 0").find("bind_address"), std::string::npos);
+  EXPECT_NE(FaultOf("source: UDP bind_address: '' cut_azimuth_deg: 0").find("bind_address"), std::string::npos);
   EXPECT_NE(FaultOf("source: UDP bind_address: '0.0.0.0' bpf_filter: 'udp' cut_azimuth_deg: 0").find("bpf_filter"), std::string::npos);
   EXPECT_NE(FaultOf("source: CAPTURE capture_file: '' cut_azimuth_deg: 0").find("capture_file"), std::string::npos);
   for (const char* speed : {"-1", "1001", "nan"}) {
@@ -111,7 +111,8 @@ TEST_F(Vlp16Params, StopTheStartWhenTheyAreWrong) {
   EXPECT_NE(FaultOf("source: CAPTURE bind_address: '' cut_azimuth_deg: 0").find("capture_file"), std::string::npos);
   EXPECT_NE(FaultOf("source: UDP bind_address: '' cut_azimuth_deg: 0 data_port: 8308").find("position_port"), std::string::npos);
   EXPECT_NE(FaultOf("source: UDP bind_address: '' cut_azimuth_deg: 360").find("cut_azimuth_deg"), std::string::npos);
-  EXPECT_NE(FaultOf("source: UDP bind_address: ''").find("cut_azimuth_deg"), std::string::npos);
+  EXPECT_NE(FaultOf("source: UDP cut_azimuth_deg: -1").find("cut_azimuth_deg"), std::string::npos);
+  EXPECT_EQ(FaultOf(""), "") << "a VLP-16 as delivered";
 }
 
 }  // namespace
