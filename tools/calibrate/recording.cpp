@@ -114,7 +114,9 @@ Recording ReadRecording(const std::filesystem::path& config_folder, const std::v
   Collector collector(recording, stretch);
   replay::Request request;
   request.only = {"lidar", "navigator"};
-  const auto inspection = replay::Inspect(files, request);
+  auto inspection = replay::Inspect(files, request);
+  // It was computed by the mounting that is in question.
+  inspection.plan.uses_lidar_motion = false;
   replay::Chain chain(config_folder, inspection.plan,
                       [&collector](Utime /*time*/, std::string_view channel, Bytes bytes) { collector.OnMessage(channel, bytes); });
   runtime::Progress progress("calibrate", runtime::OnlyTerminal(stderr));

@@ -91,7 +91,7 @@ class PlainStage final : public Stage {
 class NavigatorStage final : public Stage {
  public:
   NavigatorStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& input)
-      : params_(Load(config_folder, input.reads_raw)), service_(bus, params_) {}
+      : params_(Load(config_folder, input)), service_(bus, params_) {}
 
   void AdvanceTo(Utime time) override { service_.AdvanceTo(time); }
   bool OnDatagram(const Datagram& datagram) override {
@@ -113,9 +113,10 @@ class NavigatorStage final : public Stage {
   HealthReport Report() const override { return service_.Report(); }
 
  private:
-  static navigator::Params Load(const fs::path& config_folder, bool reads_raw) {
+  static navigator::Params Load(const fs::path& config_folder, const StageInput& input) {
     auto params = navigator::LoadParams(config_folder);
-    params.reads_nav_raw = reads_raw;
+    params.reads_nav_raw = input.reads_raw;
+    if (!input.plan.uses_lidar_motion) params.navigator.use_lidar_odometry = false;
     return params;
   }
 

@@ -25,7 +25,7 @@ NavigatorOutput Navigator::Consume(const Item& item) {
   time_ = item.time;
   NavigatorOutput output;
   if (item.kind == ItemKind::kSentence && item.source == kOdometerSource) {
-    OnOdometry(item);
+    if (params_.use_lidar_odometry) OnOdometry(item);
   } else if (item.kind == ItemKind::kSentence) {
     OnSentence(item, output);
   }
