@@ -285,9 +285,9 @@ std::string EffectiveText(const Message& message, const std::string& indent) {
 constexpr std::string_view kOfSecond = "_2";
 
 const Descriptor* SchemaOfFile(const std::filesystem::path& file) {
-  // All scenes, families and encounters have one schema, whatever their names; so has all evidence.
+  // All scenes have one schema, whatever their names and folders; so has all evidence.
   const auto folder = file.parent_path().filename();
-  const bool is_scene = folder == "scenes" || folder == "families" || folder == "encounters";
+  const bool is_scene = folder == "scenes" || folder == "families" || folder == "encounters" || folder == "calibration";
   auto stem = file.filename() == kOldLidarFile ? std::filesystem::path(kLidarFile).stem().string() : file.stem().string();
   if (stem.ends_with(kOfSecond)) stem.resize(stem.size() - kOfSecond.size());
   return FindSchema("config/schema/" + (is_scene ? "scene" : folder == "evidence" ? "evidence" : stem) + ".proto");

@@ -49,9 +49,11 @@ class MountingError : public ::testing::Test {
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
-  // config/demo with a yaw that is so much too large, and with such a deviation of the mounting stated.
+  // config/demo with a yaw that is so much too large, and with such a deviation of the mounting stated. POSE is of the other sensors alone, so that
+  // it is the same with each mounting.
   void MakeConfig(const std::string& name, double yaw_error_deg, double stated_sd_deg) const {
     fs::copy(kDemoConfig, folder_ / name);
+    std::ofstream(folder_ / name / "navigator.txtpb", std::ios::app) << "\nuse_lidar_odometry: false\n";
     ReplaceIn(folder_ / name / "boat.txtpb", "yaw_deg: 5.0", "yaw_deg: " + std::to_string(5.0 + yaw_error_deg));
     ReplaceIn(folder_ / name / "georeferencer.txtpb", "mounting_sd_deg: 0\n", "mounting_sd_deg: " + std::to_string(stated_sd_deg) + "\n");
   }

@@ -38,6 +38,26 @@ class NavigatorTest : public ::testing::Test {
   std::int64_t seq_ = 0;
 };
 
+// POSE after 2 s of motions by the lidar alone, as a log of a live run holds them.
+PoseStatus StatusAfterMotions(bool uses_them) {
+  auto params = NavigatorTestParams();
+  params.use_lidar_odometry = uses_them;
+  Navigator navigator(params);
+  auto status = PoseStatus::kOk;
+  for (int i = 0; i < 20; ++i) {
+    OdometryMotion motion{NoonPlus(0.1 * i), NoonPlus(0.1 * i + 0.1), true, {0.1, 0.0}, 0.0, {}};
+    motion.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
+    const auto output = navigator.Consume({motion.end, i, ItemKind::kSentence, kOdometerSource, ToSentence(motion)});
+    if (!output.poses.empty()) status = output.poses.back().status;
+  }
+  return status;
+}
+
+TEST(NavigatorOdometry, OfALogCountsNothingWhereTheConfigLeavesItOut) {
+  EXPECT_EQ(StatusAfterMotions(true), PoseStatus::kRelative);
+  EXPECT_EQ(StatusAfterMotions(false), PoseStatus::kUnknown);
+}
+
 TEST_F(NavigatorTest, MakesAPoseForEveryWhole20Ms) {
   EXPECT_EQ(TimesMs(Mark(ItemKind::kStart, 0.005)), std::vector<double>{});
   EXPECT_EQ(TimesMs(Mark(ItemKind::kTick, 0.0199)), std::vector<double>{});
