@@ -30,6 +30,7 @@ says 'the lidar is not mounted as boat.txtpb says: turned by 90 deg to starboard
 says 'for boat.txtpb:'
 cmp -s boat/boat.txtpb wrong.txtpb || fail 'boat.txtpb was changed without --write'
 grep -q '</svg>' marina.svg || fail 'no picture'
+[ "$(grep -c 'd="M' marina.svg)" = 2 ] || fail 'a picture without what stands'
 [ "$(wc -l <pairs.csv)" -gt 50 ] || fail 'no pairs'
 cp said report
 

@@ -26,9 +26,10 @@ std::vector<Eigen::Vector2d> CellsOf(const Recording& recording, const Assumed& 
     const auto pose = recording.track.At(recording.scans[i].end_time, assumed.latency);
     if (!pose) continue;
     for (const auto& point : StandingIn(recording.scans[i], recording.track, assumed)) {
-      const Eigen::Vector3d p_m = pose->T_map_vessel * point.p_m - origin_m;
-      if (p_m.z() + assumed.reference_point_above_water_m > kHighestM) continue;
-      auto cube = odometer::CubeOf(p_m, kCellM);
+      // The height of a pose on the earth may be far off, that above the water is not.
+      const Eigen::Vector3d from_boat_m = pose->T_map_vessel.linear() * point.p_m;
+      if (from_boat_m.z() + assumed.reference_point_above_water_m + pose->heave_m > kHighestM) continue;
+      auto cube = odometer::CubeOf(from_boat_m + pose->T_map_vessel.translation() - origin_m, kCellM);
       cube.z() = 0;
       if (index.Insert(cube).second) cells.emplace_back(kCellM * cube.head<2>().cast<double>());
     }

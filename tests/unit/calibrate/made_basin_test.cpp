@@ -74,6 +74,7 @@ TEST(MadeBasin, AMountingThatIsWrongByDegreesIsFound) {
   EXPECT_NE(report.find("for boat.txtpb:\nlidar { x_m: 0 y_m: 0 z_m: 1.5 roll_deg: "), std::string::npos) << report;
   const auto picture = PictureOf(Basin(), found, params);
   EXPECT_EQ(picture.rfind("<svg ", 0), 0U);
+  EXPECT_EQ(picture.find("d=\"\""), std::string::npos) << "a map without what stands";
   EXPECT_NE(picture.find("</svg>"), std::string::npos);
 }
 
