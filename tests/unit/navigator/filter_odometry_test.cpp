@@ -220,6 +220,53 @@ TEST(LidarAid, ALittleWrongMotionDoesNotLeadAwayFromFixes) {
   }
 }
 
+// A ship of 60 m that gathers way beside a boat that lies still looks like a shore. It drew POSE 50 m away from an ordinary receiver, as its slow
+// error is not known.
+TEST(LidarAid, AShipThatLeavesDoesNotDrawThePlaceAwayFromAnOrdinaryReceiver) {
+  const auto greatest_m = [](bool has_odometry) {
+    OdometryRun run;
+    run.boat.speed_mps = 0.0;
+    run.fix_sd_m = 1.5;
+    run.gap_begin_s = run.gap_end_s = 1000.0;
+    run.end_s = 300.0;
+    run.has_odometry = has_odometry;
+    run.spoil = [](double t, OdometryMotion& motion) {
+      if (t > 60.0 && t < 240.0) motion.displacement_m.x() -= kScanS * std::min(1.0, (t - 60.0) / 10.0);
+    };
+    const auto result = run.Sail();
+    double most_m = 0.0;
+    for (double t = 5.0; t <= run.end_s; t += kScanS) most_m = std::max(most_m, result.ErrorM(t).norm());
+    return most_m;
+  };
+  EXPECT_LT(greatest_m(true), greatest_m(false) + 0.1);
+}
+
+// The same where fixes have ended: the stated deviation does not hold such an error, so the lidar carries the place for two minutes at most.
+TEST(LidarAid, CarriesThePlaceForTwoMinutesAtMost) {
+  OdometryRun run;
+  run.gap_end_s = 400.0;
+  run.end_s = 150.0;
+  run.boat.speed_mps = 0.0;
+  const auto result = run.Sail();
+  EXPECT_EQ(result.At(120.0).status, PoseStatus::kCoasting);
+  EXPECT_NE(result.At(140.0).status, PoseStatus::kCoasting);
+}
+
+// One wrong motion, then open water, in which none is known: nothing contradicts any more.
+TEST(LidarAid, AContradictionEndsWithTheMotions) {
+  OdometryRun run;
+  run.gap_begin_s = run.gap_end_s = 100.0;
+  run.end_s = 60.0;
+  run.spoil = [](double t, OdometryMotion& motion) {
+    motion.is_known = t < 20.05;
+    if (t > 19.95) motion.displacement_m.setConstant(3.0);
+  };
+  const auto result = run.Sail();
+  auto counts = result.counts;
+  EXPECT_EQ(counts["gated_odometry"], 1);
+  EXPECT_FALSE(result.contradicted);
+}
+
 TEST(LidarAid, ATurnThatTheCompassContradictsIsGated) {
   OdometryRun run;
   run.gap_begin_s = run.gap_end_s = 100.0;

@@ -179,6 +179,10 @@ void PropagateStep(const ImuSample* sample, double step_s, const Earth& earth, c
   covariance(kWaterLevel, kWaterLevel) += kWaterLevelMPerRootS * kWaterLevelMPerRootS * step_s;
 }
 
+// The lidar carries them no longer than so: what it takes for a shore may be a ship that leaves, and the stated deviation does not hold that.
+constexpr std::chrono::seconds kMaxCarriedPosition(120);
+constexpr std::chrono::seconds kMaxCarriedHeading(600);
+
 // Gives up values that were measured too long ago.
 void ForgetOld(const FilterParams& params, State& state) {
   if (state.aiding.has_heading) {
@@ -186,7 +190,8 @@ void ForgetOld(const FilterParams& params, State& state) {
     const auto& source = state.aiding.heading();
     const auto max_age = state.aiding.heading_source == HeadingSource::kCourse ? params.max_position_age : params.max_attitude_age;
     // Gyroscopes and the lidar tell the turn.
-    const bool is_turn_known = state.aiding.has_gyro || state.aiding.odometry.IsWithin(state.time, params.max_attitude_age);
+    const bool is_turn_known = state.aiding.has_gyro || (state.aiding.odometry.IsWithin(state.time, params.max_attitude_age) &&
+                                                         source.IsWithin(state.time, kMaxCarriedHeading));
     const bool is_carried =
         is_turn_known ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad : source.IsWithin(state.time, max_age);
     if (!is_carried && !source.IsWithin(state.time, params.max_attitude_age)) {
@@ -210,7 +215,8 @@ void ForgetOld(const FilterParams& params, State& state) {
     const double variance = state.HorizontalVarianceM2();
     const double max_variance = state.aiding.position_sd_at_fix_m * state.aiding.position_sd_at_fix_m + params.max_coast_sd_m * params.max_coast_sd_m;
     const bool is_way_known =
-        state.aiding.fix.IsWithin(state.time, params.max_position_age) || state.aiding.odometry.IsWithin(state.time, params.max_position_age);
+        state.aiding.fix.IsWithin(state.time, params.max_position_age) ||
+        (state.aiding.odometry.IsWithin(state.time, params.max_position_age) && state.aiding.fix.IsWithin(state.time, kMaxCarriedPosition));
     const bool is_carried = is_way_known && variance <= max_variance;
     // Contradicting fixes are not forgotten: they tell the next one what was wrong.
     if (!is_carried && state.aiding.fix.IsStoppedAt(state.time)) ForgetPlace(state);

@@ -1,4 +1,5 @@
 // Own motion by the lidar as an aid: a motion from scan to scan is compared with what the state has done meanwhile.
+#include <algorithm>
 #include <cmath>
 
 #include "common/core/angles.hpp"
@@ -39,7 +40,15 @@ Innovation<3> MotionOf(const OdometryMotion& motion, const FilterParams& params,
   return innovation;
 }
 
-// Where the place is not known, or was begun anew since, the turn alone counts.
+template <int kRows>
+Innovation<kRows> FirstOf(const Innovation<3>& motion) {
+  Innovation<kRows> innovation;
+  innovation.residual = motion.residual.head<kRows>();
+  innovation.jacobian = motion.jacobian.topRows<kRows>();
+  innovation.noise = motion.noise.topLeftCorner<kRows, kRows>();
+  return innovation;
+}
+
 Innovation<1> TurnOf(const Innovation<3>& motion) {
   Innovation<1> innovation;
   innovation.residual = motion.residual.tail<1>();
@@ -48,11 +57,36 @@ Innovation<1> TurnOf(const Innovation<3>& motion) {
   return innovation;
 }
 
+// A measurement that is late by half an interval counts as missing: without an IMU a turn is known for less than a second.
+bool GoesOn(const UseTimes& input, Utime time) {
+  constexpr double kLeastS = 0.3;
+  return input.last && SecondsBetween(*input.last, time) <= std::max(kLeastS, 1.5 * input.interval_s);
+}
+
+// The lidar replaces what is not measured, and helps what is measured to centimetres and a fraction of a degree. Nothing else: a large ship that
+// gathers way looks like a shore, and would draw the state away from a receiver or a compass whose slow error is not known, however often these
+// measure.
+bool ApplyNeeded(const Innovation<3>& motion, bool may_use_way, State& state) {
+  const auto& aiding = state.aiding;
+  const bool uses_way = may_use_way && (!GoesOn(aiding.fix, state.time) || aiding.fix_error_model.kind == ErrorKind::kRtk);
+  const bool uses_turn = !GoesOn(aiding.heading(), state.time) || aiding.heading_error_model.kind == ErrorKind::kTwoAntennas;
+  // All of it must agree, also what is not used.
+  State agreeing = state;
+  if (!(may_use_way ? Correct(motion, false, agreeing) : Correct(TurnOf(motion), false, agreeing)).is_accepted) return false;
+  if (uses_turn && (uses_way || !may_use_way)) {
+    state = agreeing;
+  } else if (uses_way) {
+    Correct(FirstOf<2>(motion), false, state);
+  } else if (uses_turn) {
+    Correct(TurnOf(motion), false, state);
+  }
+  return true;
+}
+
 void ApplyMotion(const OdometryMotion& motion, const FilterParams& params, State& state, GateCounts& counts) {
-  const auto innovation = MotionOf(motion, params, state);
-  const bool has_position = state.aiding.scan_place.has_position && state.aiding.has_position;
-  const bool is_accepted = has_position ? Correct(innovation, false, state).is_accepted : Correct(TurnOf(innovation), false, state).is_accepted;
-  if (is_accepted) {
+  // Where the place is not known, or was begun anew since, the turn alone counts.
+  const bool may_use_way = state.aiding.scan_place.has_position && state.aiding.has_position;
+  if (ApplyNeeded(MotionOf(motion, params, state), may_use_way, state)) {
     state.aiding.odometry.Use(state.time);
     state.aiding.odometry_contradicts_since.reset();
     return;
@@ -66,6 +100,7 @@ void ApplyMotion(const OdometryMotion& motion, const FilterParams& params, State
 void Apply(const OdometryMotion& motion, const FilterParams& params, State& state, GateCounts& counts) {
   const auto& from = state.aiding.scan_place;
   const bool has_begin = from.time == motion.begin && from.has_heading && state.aiding.has_heading;
+  if (!motion.is_known) state.aiding.odometry_contradicts_since.reset();
   if (motion.is_known && has_begin && !IsOdometryRefused(state)) ApplyMotion(motion, params, state, counts);
   SetScanPlace(params, state);
 }

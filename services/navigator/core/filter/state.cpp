@@ -74,7 +74,7 @@ void RefuseImu(double tilt_sd_rad, State& state) {
 
 void RefuseOdometry(State& state) {
   auto& aiding = state.aiding;
-  if (!aiding.odometry.IsWithin(state.time, kLedByLidar)) return;
+  if (IsOdometryRefused(state) || !aiding.odometry.IsWithin(state.time, kLedByLidar)) return;
   aiding.odometry_refusal_s = std::clamp(2.0 * aiding.odometry_refusal_s, kFirstRefusalS, kMaxRefusalS);
   aiding.odometry_refused_until = state.time + std::chrono::microseconds(std::llround(1e6 * aiding.odometry_refusal_s));
 }
