@@ -3,7 +3,7 @@
 
 clang_tidy.py ROOT BUILD: the sources of ROOT's common, services, tools and lab in BUILD/compile_commands.json, without generated ones.
 
-A source that was found clean is looked at again only when its text after the preprocessor (all its headers with it, comments kept), its
+A source that was found clean is looked at again only when its text after the preprocessor (all its headers with it, comments and macros kept), its
 command, .clang-tidy or clang-tidy itself has changed. These verdicts stand beside other programs' caches, each an empty file, named by
 a digest of all four in which ROOT has no part, so that they hold in every checkout. Those unused for 30 days go.
 """
@@ -36,7 +36,7 @@ def is_ours(root, source):
 def digest(root, tool, entry):
     """Of everything that decides what clang-tidy says; none where the source does not get through the preprocessor."""
     command = shlex.split(entry["command"])
-    preprocess, is_output = ["clang++", "-E", "-C"], False
+    preprocess, is_output = ["clang++", "-E", "-CC", "-dD"], False
     for word in command[1:]:
         if is_output:
             is_output = False
@@ -57,7 +57,8 @@ def look_at(root, build, folder, tool, entry):
     key = digest(root, tool, entry)
     verdict = os.path.join(folder, key) if key else None
     if verdict and os.path.exists(verdict):
-        os.utime(verdict)
+        with open(verdict, "a", encoding="utf-8"):
+            os.utime(verdict)
         return True, None
     result = subprocess.run(["clang-tidy", "--quiet", CHECKS, "-p", build, entry["file"]], stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
     is_clean = result.returncode == 0
@@ -74,8 +75,11 @@ def main():
     os.makedirs(folder, exist_ok=True)
     for name in os.listdir(folder):
         path = os.path.join(folder, name)
-        if time.time() - os.path.getmtime(path) > KEEP_S:
-            os.remove(path)
+        try:
+            if time.time() - os.path.getmtime(path) > KEEP_S:
+                os.remove(path)
+        except FileNotFoundError:  # by another checkout at the same time
+            pass
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
         entries = {entry["file"]: entry for entry in json.load(file) if is_ours(root, entry["file"])}
     if not entries:

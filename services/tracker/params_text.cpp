@@ -38,7 +38,11 @@ ZoneRemark LowThings(const ZoneSightParams& params) {
 
 std::vector<ZoneRemark> RemarksOnZone(const Params& params) {
   const auto& zone_sight = params.zone_sight;
-  if (zone_sight.zone.range_m <= 0.0 || zone_sight.expected_elevation_rad.empty()) return {};
+  if (zone_sight.zone.range_m <= 0.0) {
+    return {{"there is no guard zone: what lies near raises no alert, a closest approach alone does",
+             "guard_zone in tracker.txtpb, or in tracker of boat.txtpb"}};
+  }
+  if (zone_sight.expected_elevation_rad.empty()) return {};
   const ZoneGrid grid(zone_sight, zone_sight.expected_elevation_rad, ZoneSight::kPostM);
   auto parts = grid.PartsByConfig();
   std::erase_if(parts, [](const UnseenPart& part) { return !part.is_wide; });

@@ -10,8 +10,10 @@
 #include <string_view>
 #include <utility>
 
+#include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
 #include "common/io/output_file.hpp"
+#include "config/schema/boat.pb.h"
 
 namespace lookout::calibrate {
 
@@ -129,12 +131,25 @@ void WriteAngles(const std::filesystem::path& config_folder, const Angles& angle
   const auto changed = WithAngles(text, angles);
   if (!changed)
     throw std::runtime_error(file.string() + ": the angles in lidar { } were not found; nothing is written, put the lines above there by hand");
+  // All values but the angles are as they were.
+  config::Boat before;
+  config::Boat after;
+  config::ParseText(text, file.string(), before);
+  config::ParseText(*changed, file.string(), after);
+  for (auto* boat : {&before, &after}) {
+    boat->mutable_lidar()->clear_roll_deg();
+    boat->mutable_lidar()->clear_pitch_deg();
+    boat->mutable_lidar()->clear_yaw_deg();
+  }
+  if (before.SerializeAsString() != after.SerializeAsString())
+    throw std::runtime_error(file.string() +
+                             ": the angles in lidar { } could not be replaced; nothing is written, put the lines above there by hand");
   io::OutputFile old(config_folder / "boat.txtpb.old");
-  io::OutputFile output(file, {.force = true});
+  // Where boat.txtpb is a link, the file that it names is written.
+  io::OutputFile output(std::filesystem::canonical(file), {.force = true});
   old.Write(text);
   output.Write(*changed);
-  old.Commit();
-  output.Commit();
+  io::CommitAll({&old, &output});
 }
 
 }  // namespace lookout::calibrate

@@ -158,6 +158,9 @@ void Conclude(const Recording& recording, const CalibrationParams& params, const
   if (result.after_m > kMostAfterM || result.after_rad > kMostAfterRad) {
     result.refusal =
         fmt::format("what stands does not agree with POSE: scans disagree by {:.2f} m and {:.1f} deg", result.after_m, RadToDeg(result.after_rad));
+  } else if (result.manoeuvres.turned_rad < kLeastTurnRad) {
+    // Boats that drift together bend a straight way by a constant angle, in which no residual shows.
+    result.refusal = "the boat turned too little: what drifts cannot be told from what stands";
   } else if (!result.yaw.is_found || !result.roll.is_found || !result.pitch.is_found) {
     result.refusal = "the recording shows too little of the mounting";
   }

@@ -242,12 +242,6 @@ Correction Correction::FromNumbers(const Numbers& numbers) {
   return correction;
 }
 
-Eigen::Matrix3d RotationBy(const Eigen::Vector3d& rotation_rad) {
-  const double angle_rad = rotation_rad.norm();
-  if (angle_rad < 1e-12) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle_rad, rotation_rad / angle_rad).toRotationMatrix();
-}
-
 Eigen::Vector3d RotationVectorOf(const Eigen::Matrix3d& R) {
   const Eigen::AngleAxisd turn(R);
   return turn.angle() * turn.axis();

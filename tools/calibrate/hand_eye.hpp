@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "common/core/utime.hpp"
+#include "services/odometer/core/registration.hpp"
 #include "tools/calibrate/pose_track.hpp"
 
 namespace lookout::calibrate {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using odometer::Matrix6;
+using odometer::RotationBy;
+using odometer::Vector6;
 
 /// A motion that the lidar saw, between the ends of two scans.
 struct RelativeMotion {
@@ -72,8 +74,7 @@ std::optional<Vector6> Residual(const RelativeMotion& motion, const PoseTrack& t
 std::optional<HandEyeResult> SolveHandEye(const std::vector<RelativeMotion>& motions, const PoseTrack& track, const Eigen::Vector3d& p_vessel_lidar_m,
                                           const Correction& start, const HandEyeParams& params);
 
-/// Rotation by a vector: axis times angle; and the vector of a rotation.
-Eigen::Matrix3d RotationBy(const Eigen::Vector3d& rotation_rad);
+/// The vector of any rotation: axis times angle.
 Eigen::Vector3d RotationVectorOf(const Eigen::Matrix3d& R);
 
 }  // namespace lookout::calibrate

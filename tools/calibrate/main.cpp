@@ -58,7 +58,7 @@ Options ParseOptions(int argc, char** argv) {
   app.add_option("--begin", options.stretch.begin_s, "seconds after the first scan at which to begin")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--seconds", options.stretch.seconds, "so much of the recording is looked at; 1 MB of memory each")
+  app.add_option("--seconds", options.stretch.seconds, "so much of the recording is looked at; 1 MB of memory each, 5 MB of 128 rings by 2048")
       ->check(CLI::Range(10.0, 3600.0))
       ->capture_default_str();
   app.add_flag("--write", options.writes, "write the angles into boat.txtpb; the old file stays as boat.txtpb.old, and one that exists is refused");

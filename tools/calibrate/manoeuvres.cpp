@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kTrackStepS = 0.5;
 constexpr double kLeastInSight = 0.3;
-const double kLeastTurnRad = DegToRad(180.0);
 constexpr double kLeastWayM = 30.0;
 
 }  // namespace
@@ -59,7 +58,7 @@ std::vector<std::string> MissingMotions(const Calibration& calibration) {
   if (done.share_in_sight < kLeastInSight && !(is_yaw_found && is_tilt_found)) {
     missing.emplace_back("go near what stands: a quay, a shore with trees, moored boats, within 40 m on at least two sides");
   }
-  if (!is_tilt_found || !is_yaw_found) {
+  if (!is_tilt_found || !is_yaw_found || done.turned_rad < kLeastTurnRad) {
     if (done.turned_rad < kLeastTurnRad) missing.emplace_back("turn twice by 90 degrees near a quay or a shore, better a full round");
     if (done.way_m < kLeastWayM) missing.emplace_back("go 50 m past what stands, there and back");
     if (done.turned_rad >= kLeastTurnRad && done.way_m >= kLeastWayM)

@@ -4,9 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "common/core/angles.hpp"
 #include "tools/calibrate/calibration.hpp"
 
 namespace lookout::calibrate {
+
+/// Less does not show the mounting.
+inline const double kLeastTurnRad = DegToRad(180.0);
 
 Manoeuvres ManoeuvresOf(const Recording& recording, const std::vector<odometer::Motion>& motions);
 

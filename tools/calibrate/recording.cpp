@@ -115,8 +115,8 @@ Recording ReadRecording(const std::filesystem::path& config_folder, const std::v
   replay::Request request;
   request.only = {"lidar", "navigator"};
   auto inspection = replay::Inspect(files, request);
-  // It was computed by the mounting that is in question.
-  inspection.plan.uses_lidar_motion = false;
+  // Both are turned by the mounting that is in question, and would agree with it.
+  inspection.plan.pose_by_lidar = false;
   replay::Chain chain(config_folder, inspection.plan,
                       [&collector](Utime /*time*/, std::string_view channel, Bytes bytes) { collector.OnMessage(channel, bytes); });
   runtime::Progress progress("calibrate", runtime::OnlyTerminal(stderr));

@@ -139,6 +139,7 @@ std::vector<odometer::MapPoint> StandingIn(const odometer::Scan& scan, const Pos
   params.T_vessel_lidar = assumed.T_vessel_lidar;
   if (assumed.min_height_m) params.own_vessel_box_m = assumed.own_vessel_box_m;
   const double scan_s = ToSeconds(scan.end_time - scan.time);
+  if (scan_s <= 0.0) return straightened;
   const Eigen::Isometry3d T_end_begin = end->T_map_vessel.inverse() * begin->T_map_vessel;
   const Eigen::Vector3d turn_rad = RotationVectorOf(T_end_begin.linear());
   const auto points = odometer::StandingPoints(scan, kMapSampleM, params);

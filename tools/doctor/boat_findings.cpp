@@ -106,9 +106,6 @@ Findings CheckMounting(const ConfigSeen& config) {
 Findings CheckGuardZone(const Observations& seen) {
   const auto& config = seen.config;
   if (!config.tracker) return {};  // the config's lines of the file say why
-  if (config.tracker->look_out.limits.guard_zone.range_m <= 0.0) {
-    return {Ok(kGuardZoneSubject, "there is none in tracker.txtpb: only closest approach raises alerts")};
-  }
   if (!seen.zone_unseen.empty()) {
     return {Warning(
         kGuardZoneSubject, seen.zone_unseen,

@@ -45,7 +45,7 @@ struct Plan {
   std::vector<std::string> read = {};                  // channels that come out of the logs, in the order of the channel table
   std::vector<std::string> absent = {};                // of these, channels that the logs do not hold
   std::optional<tracker::Script> script = {};          // actions of the live tracker, where the logs tell
-  bool uses_lidar_motion = true;                       // false: POSE is of the other sensors alone, whatever navigator.txtpb says
+  bool pose_by_lidar = true;                           // false: POSE without the lidar's motion and without the IMU in it
 
   bool Runs(std::string_view service) const;
   /// Whether a service that runs publishes the channel.

@@ -116,7 +116,8 @@ class NavigatorStage final : public Stage {
   static navigator::Params Load(const fs::path& config_folder, const StageInput& input) {
     auto params = navigator::LoadParams(config_folder);
     params.reads_nav_raw = input.reads_raw;
-    if (!input.plan.uses_lidar_motion) params.navigator.use_lidar_odometry = false;
+    params.navigator.use_lidar_odometry = params.navigator.use_lidar_odometry && input.plan.pose_by_lidar;
+    params.navigator.use_lidar_imu = input.plan.pose_by_lidar;
     return params;
   }
 

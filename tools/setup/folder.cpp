@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
+#include "common/config/boat.hpp"
 #include "common/config/boat_sections.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
@@ -71,6 +74,18 @@ void CheckBoat(const fs::path& folder, const std::string& text) {
   faults.ThrowIfAny();
 }
 
+// Whole, or not at all.
+void KeepCopy(const fs::path& file, const fs::path& kept) {
+  if (fs::is_symlink(file)) return fs::copy_symlink(file, kept);
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw std::runtime_error(Printable(file.string()) + ": cannot be read");
+  io::OutputFile copy(kept);
+  copy.Write(text.str());
+  copy.Commit();
+}
+
 // FILE.old, FILE.old.2 ...: what stands there already is kept, too.
 fs::path OldName(const fs::path& file) {
   auto name = file.native() + ".old";
@@ -105,18 +120,24 @@ std::vector<fs::path> WriteBoat(const fs::path& folder, const std::string& text,
   io::OutputFile file(folder / kBoatFile, {.force = force});
   file.Write(text);
   file.Prepare();
+  const auto replaced = ReplacedFiles(folder);
   std::vector<fs::path> kept;
-  for (const auto& replaced : ReplacedFiles(folder)) {
-    kept.push_back(OldName(replaced));
-    // An old boat stays in its place until the new one takes it.
-    if (replaced.filename() == kBoatFile) {
-      fs::copy(replaced, kept.back(), fs::copy_options::copy_symlinks);
-    } else {
-      fs::rename(replaced, kept.back());
-    }
-  }
+  for (const auto& old : replaced) kept.push_back(OldName(old));
+  if (!replaced.empty() && replaced.front().filename() == kBoatFile) KeepCopy(replaced.front(), kept.front());
+  // Sections of the new boat beside old files are refused by every process: a folder that was left in between starts nothing.
   file.Commit();
+  for (std::size_t i = 0; i < replaced.size(); ++i) {
+    if (replaced[i].filename() != kBoatFile) fs::rename(replaced[i], kept[i]);
+  }
   return kept;
+}
+
+std::string DoubtsOf(const fs::path& folder) {
+  std::string text;
+  for (const auto& remark : config::RemarksOnBoat(config::LoadBoat(folder))) {
+    if (!remark.cure.empty()) text += "warning: " + remark.words + "; " + remark.cure + "\n";
+  }
+  return text;
 }
 
 std::string NextSteps(const fs::path& folder) {

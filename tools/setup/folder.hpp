@@ -14,13 +14,16 @@ std::vector<std::filesystem::path> ReplacedFiles(const std::filesystem::path& fo
 /// Whether the boat may be written there. @throws std::runtime_error: it replaces files, and `force` is not set; the folder is a file
 void CheckPlace(const std::filesystem::path& folder, bool force);
 
-/// Checks boat.txtpb as lookout-doctor --check does, with the files that stay; writes it; keeps what it replaces as FILE.old, or FILE.old.2 and so
-/// on.
+/// Checks boat.txtpb as lookout-doctor --check does, with the files that stay; writes it; keeps what it replaces as FILE.old, or
+/// FILE.old.2 and so on.
 ///
 /// @return the kept files
-/// @throws config::ConfigError where the boat would be wrong; std::runtime_error as CheckPlace, and where it cannot be written. Nothing has changed
-/// then
+/// @throws config::ConfigError where the boat would be wrong; std::runtime_error as CheckPlace, and where it cannot be written: then nothing has
+/// changed
 std::vector<std::filesystem::path> WriteBoat(const std::filesystem::path& folder, const std::string& text, bool force);
+
+/// Of a written boat: what lookout-doctor would doubt in its numbers, a line each.
+std::string DoubtsOf(const std::filesystem::path& folder);
 
 /// What to do next, and where the page is, for people.
 std::string NextSteps(const std::filesystem::path& folder);

@@ -82,7 +82,7 @@ bool Run(const Options& options) {
   const auto kept = setup::WriteBoat(options.out, setup::BoatFile(answers, heard), options.force);
   std::cout << "\nwritten: " << (options.out / "boat.txtpb").string() << "\n";
   for (const auto& file : kept) std::cout << "kept:  " << file.string() << "\n";
-  std::cout << setup::NextSteps(options.out);
+  std::cout << setup::DoubtsOf(options.out) << setup::NextSteps(options.out);
   return true;
 }
 

@@ -126,7 +126,7 @@ Question AntennaAt() {
 }
 
 Question HeadingOffset() {
-  return {"Degrees to add to the heading sensor to get the heading of the boat (90: its 0 is the boat's starboard)?", "0",
+  return {"Degrees to add to the heading sensor to get the heading of the boat (-90: its 0 is the boat's starboard, 90: its port)?", "0",
           [](const std::string& answer, Answers& answers) { return TakeNumbers(answer, answers, {"heading_offset_deg"}); }};
 }
 

@@ -10,6 +10,8 @@ static_assert(PosePeriods(1) == Navigator::kPosePeriod);
 // Least multiple of the pose period that is not before `time`.
 Utime CeilToPose(Utime time) { return std::chrono::ceil<PosePeriods>(time); }
 
+bool IsOfLidarImu(const Item& item) { return item.source == kLidarSource && item.sentence.starts_with("$VNIMU"); }
+
 }  // namespace
 
 Navigator::Navigator(const NavigatorParams& params) : params_(params), interpreter_(params), filter_(params.filter) {}
@@ -26,7 +28,7 @@ NavigatorOutput Navigator::Consume(const Item& item) {
   NavigatorOutput output;
   if (item.kind == ItemKind::kSentence && item.source == kOdometerSource) {
     if (params_.use_lidar_odometry) OnOdometry(item);
-  } else if (item.kind == ItemKind::kSentence) {
+  } else if (item.kind == ItemKind::kSentence && (params_.use_lidar_imu || !IsOfLidarImu(item))) {
     OnSentence(item, output);
   }
   if (item.imu) filter_.Add(InVesselFrame(item.time, *item.imu));

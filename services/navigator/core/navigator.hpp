@@ -18,6 +18,7 @@ namespace lookout::navigator {
 struct NavigatorParams : InterpreterParams {
   FilterParams filter;
   bool use_lidar_odometry = true;
+  bool use_lidar_imu = true;  // of the IMU in a lidar, whose samples are turned by its mounting
 };
 
 /// Results of one item.

@@ -44,12 +44,15 @@ TEST(BoatFile, IsLeftAloneWhereItIsNotUnderstood) {
 
 TEST(BoatFile, TheOldFileStaysAndASecondIsRefused) {
   const support::TempDir folder;
-  const std::string text = "lidar { roll_deg: 1 pitch_deg: 2 yaw_deg: 3 }\n";
+  const std::string text =
+      "name: 'Ida' gnss_antenna { x_m: 0 y_m: 0 z_m: 1 } reference_point_above_water_m: 0.2 "
+      "own_vessel { min_x_m: -1 max_x_m: 1 min_y_m: -1 max_y_m: 1 min_z_m: -1 max_z_m: 2 }\n"
+      "lidar { x_m: 0 y_m: 0 z_m: 1 roll_deg: 1 pitch_deg: 2 yaw_deg: 3 }\n";
   std::ofstream(folder / "boat.txtpb") << text;
   WriteAngles(folder / ".", kAngles);
   EXPECT_EQ(TextOf(folder / "boat.txtpb.old"), text);
   const auto written = TextOf(folder / "boat.txtpb");
-  EXPECT_EQ(written, "lidar { roll_deg: 1.23 pitch_deg: 0.00 yaw_deg: -95.00 }\n");
+  EXPECT_EQ(written.substr(written.find("lidar")), "lidar { x_m: 0 y_m: 0 z_m: 1 roll_deg: 1.23 pitch_deg: 0.00 yaw_deg: -95.00 }\n");
   EXPECT_THROW(WriteAngles(folder / ".", {}), std::runtime_error);
   EXPECT_EQ(TextOf(folder / "boat.txtpb"), written) << "nothing is changed where the old file could not be kept";
 }

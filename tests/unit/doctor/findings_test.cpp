@@ -78,8 +78,8 @@ TEST(DoctorGuardZone, SaysWhatTheLidarCannotLookInto) {
   tracker->zone_sight.max_range_m = 120.0;
   tracker->zone_sight.T_vessel_lidar.translation().z() = 3.0;
   EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kWarning, "nothing as low as 0.5 m above the water is seen");
-  tracker->look_out.limits.guard_zone.range_m = 0.0;
-  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kOk, "there is none");
+  tracker->zone_sight.zone.range_m = 0.0;
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kWarning, "there is no guard zone");
   tracker.reset();
   EXPECT_TRUE(CheckGuardZone(seen).empty());
 }

@@ -58,6 +58,21 @@ TEST(NavigatorOdometry, OfALogCountsNothingWhereTheConfigLeavesItOut) {
   EXPECT_EQ(StatusAfterMotions(false), PoseStatus::kUnknown);
 }
 
+// The tool that looks for the lidar's mounting must not read what that mounting has turned.
+TEST(NavigatorLidarImu, CanBeLeftOut) {
+  const auto num_read = [](bool uses, const char* source) {
+    auto params = NavigatorTestParams();
+    params.use_lidar_imu = uses;
+    Navigator navigator(params);
+    navigator.Consume({NoonPlus(0.0), 0, ItemKind::kStart, {}, {}});
+    navigator.Consume({NoonPlus(0.1), 1, ItemKind::kSentence, source, Line("VNIMU,this,is,none")});
+    return support::CountOf(navigator, "bad_field");  // what is read is refused
+  };
+  EXPECT_EQ(num_read(true, kLidarSource), 1);
+  EXPECT_EQ(num_read(false, kLidarSource), 0);
+  EXPECT_EQ(num_read(false, kUdpSource), 1);
+}
+
 TEST_F(NavigatorTest, MakesAPoseForEveryWhole20Ms) {
   EXPECT_EQ(TimesMs(Mark(ItemKind::kStart, 0.005)), std::vector<double>{});
   EXPECT_EQ(TimesMs(Mark(ItemKind::kTick, 0.0199)), std::vector<double>{});

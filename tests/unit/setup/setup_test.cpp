@@ -178,13 +178,13 @@ TEST(BoatFile, HoldsTheFactsOfTheAnswers) {
 
 TEST(BoatFile, HasAnInputForEachSourceOfSentences) {
   const Heard heard{.lidars = {Vlp16At("192.168.1.201")}, .nmea = {OnUdp(2000), OnUdp(10110), OnSerial("/dev/serial/by-id/usb-gnss")}};
-  const auto talk = TalkOf("Ida\n5.2 x 2.1\n1.2 0 1.5\n\n\n\n90\n\neverybody\n", heard);
+  const auto talk = TalkOf("Ida\n5.2 x 2.1\n1.2 0 1.5\n\n\n\n-90\n\neverybody\n", heard);
   ASSERT_TRUE(talk.is_whole) << talk.text;
   const support::TempDir folder;
   support::WriteFile(folder / "boat.txtpb", BoatFile(talk.answers, heard));
   const auto boat = config::Load<config::Boat>(folder, "boat.txtpb");
   EXPECT_EQ(boat.navigator().bind_address(), "0.0.0.0");
-  EXPECT_EQ(boat.navigator().heading_offset_deg(), 90.0);
+  EXPECT_EQ(boat.navigator().heading_offset_deg(), -90.0);
   ASSERT_EQ(boat.navigator().input_size(), 2);
   EXPECT_EQ(boat.navigator().input(0).udp().port(), 2000);
   EXPECT_EQ(boat.navigator().input(1).serial().device(), "/dev/serial/by-id/usb-gnss");

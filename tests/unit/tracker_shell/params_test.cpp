@@ -60,7 +60,9 @@ TEST(ZoneInWords, SaysWhatNobodyLooksInto) {
       "# tracker.txtpb: by the config the lidar can look into all of the guard zone of 10.0 m; what the lidar itself is set to, and what stands "
       "before "
       "it, its scans tell\n";
-  EXPECT_EQ(says("", ""), "");
+  EXPECT_EQ(says("", ""),
+            "# tracker.txtpb: warning: there is no guard zone: what lies near raises no alert, a closest approach alone does; look at guard_zone in "
+            "tracker.txtpb, or in tracker of boat.txtpb\n");
   EXPECT_EQ(says(ahead, ""),
             ok + "# tracker.txtpb: in the guard zone things of 0.5 m above the water are seen from 1.5 m on, with the boat level: nearer "
                  "they are below the lowest beam\n");
