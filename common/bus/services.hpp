@@ -69,7 +69,8 @@ inline constexpr std::array kServices{
                "logs",
                "checks the config",
                "who watches, the last minutes where no recorder runs",
-               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kAlertAck}},
+               {&kLidarScan, &kLidarScan2, &kLidarClock, &kSegments, &kSegments2, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts,
+                &kAlertAck}},
     ServiceRow{"recorder", "recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
 
 constexpr bool Publishes(const ServiceRow& service, const Channel& channel) { return channel.publisher == service.role; }

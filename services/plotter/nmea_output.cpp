@@ -1,6 +1,7 @@
 #include "services/plotter/nmea_output.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "services/plotter/core/nmea0183.hpp"
 
@@ -12,8 +13,21 @@ constexpr std::size_t kAmpleRoomBytes = 2000;
 constexpr std::size_t kOwnShipBytes = 3 * kMaxSentenceBytes;
 constexpr std::chrono::milliseconds kFreshOwnShip(100);
 constexpr std::chrono::seconds kSlowRepeat(1);
+constexpr std::chrono::milliseconds kRefusalPeriod(100);
+
+// 0 to 9, and after 9 comes 1.
+int EscalationAfter(std::chrono::microseconds unacknowledged) {
+  constexpr int kMost = 9;
+  const auto count = unacknowledged / NmeaOutput::kEscalateAfter;
+  return count <= 0 ? 0 : static_cast<int>((count - 1) % kMost + 1);
+}
 
 }  // namespace
+
+NmeaOutput::NmeaOutput(const OutputParams& params, std::unique_ptr<Link> link, std::chrono::microseconds target_period, RevisionFile revisions)
+    : Output(params, std::move(link)), targets_(target_period), revisions_(std::move(revisions)) {
+  notices_.Recall(revisions_.Read());
+}
 
 void NmeaOutput::SendOwnShip(const Told& told) {
   own_ship_sent_ = told.passed;
@@ -52,16 +66,22 @@ void NmeaOutput::FinishTargets(const Told& told) {
   if (params().targets != SentTargets::kNone && told.own.is_placed()) SendEnded(told, {});
 }
 
+// ALR has no word for sound, and ALF one for silence.
+std::vector<Notice> NmeaOutput::AsTold(const Told& told) const {
+  const bool is_alf = params().alerts == SentAlerts::kAlf;
+  std::vector<Notice> notices(told.notices.begin(), told.notices.end());
+  for (auto& notice : notices) {
+    if (!is_alf || notice.sound != Sound::kSilenced) notice.sound = Sound::kQuiet;
+    const bool wants = notice.level == Level::kWarning && notice.state == NoticeState::kActive;
+    if (is_alf && wants) notice.escalation = EscalationAfter(told.host_time - notice.changed);
+  }
+  return notices;
+}
+
 void NmeaOutput::SendNotices(const Told& told) {
   if (params().alerts == SentAlerts::kNone) return;
   constexpr int kSequences = 10;
-  // ALR has no word for sound, and ALF one for silence.
-  std::vector<Notice> notices(told.notices.begin(), told.notices.end());
-  for (auto& notice : notices) {
-    const bool is_said = params().alerts == SentAlerts::kAlf && notice.sound == Sound::kSilenced;
-    if (!is_said) notice.sound = Sound::kQuiet;
-  }
-  for (const auto& [notice, revision, is_repeat] : notices_.Take(notices, told.passed)) {
+  for (const auto& [notice, revision, is_repeat] : notices_.Take(AsTold(told), told.passed)) {
     // Repeats give way to all else, and on a slow port one of them a second is enough.
     if (is_repeat && room_bytes() < kAmpleRoomBytes && repeat_sent_ && told.passed - *repeat_sent_ < kSlowRepeat) continue;
     std::string lines;
@@ -77,25 +97,66 @@ void NmeaOutput::SendNotices(const Told& told) {
       SendSurely(lines, SubjectOf(notice));
     }
   }
+  if (params().alerts == SentAlerts::kAlf) SendList(told);
+}
+
+void NmeaOutput::SendList(const Told& told) {
+  constexpr int kHeartbeats = 10;
+  constexpr int kLists = 100;
+  const auto standing = notices_.Standing();
+  revisions_.Write(standing);
+  if (list_sent_ && told.passed - *list_sent_ < kListPeriod) return;
+  const bool is_well = std::ranges::none_of(told.notices, [](const Notice& notice) { return notice.id == 0 && notice.cause == Cause::kWatch; });
+  if (!Send(Hbt(params().target_talker, kListPeriod, is_well, heartbeat_sequence_) + Alc(params().target_talker, standing, list_sequence_))) return;
+  list_sent_ = told.passed;
+  heartbeat_sequence_ = (heartbeat_sequence_ + 1) % kHeartbeats;
+  list_sequence_ = (list_sequence_ + 1) % kLists;
 }
 
 void NmeaOutput::SendAnew() {
   targets_.Forget();
   notices_.SendAnew();
+  list_sent_.reset();
 }
 
-std::vector<std::int64_t> NmeaOutput::Read(const std::string& message, const Told& told) {
-  AcknowledgedNumber acknowledged;
-  const auto kind = ReadLine(message, acknowledged);
+Commands NmeaOutput::Read(const std::string& message, const Told& told) {
+  AlertCommand command;
+  const auto kind = ReadLine(message, command);
   if (kind == LineKind::kWrong) CountRefused();
-  if (kind != LineKind::kAcknowledgement) return {};
-  // In the words in which this output was told of alerts; of two of one number the later.
-  if (params().alerts != (acknowledged.is_alarm_number ? SentAlerts::kAlr : SentAlerts::kAlf)) return {};
+  // In the words in which this output was told of alerts.
+  if (kind != LineKind::kCommand || params().alerts != (command.is_alarm_number ? SentAlerts::kAlr : SentAlerts::kAlf)) return {};
+  return Obey(command, told);
+}
+
+Commands NmeaOutput::Obey(const AlertCommand& command, const Told& told) {
+  // Of two of one number the later.
+  const auto notices = AsTold(told);
   const Notice* meant = nullptr;
-  for (const auto& notice : told.notices) {
-    if (notice.id != 0 && Means(acknowledged, notice) && (meant == nullptr || meant->raised < notice.raised)) meant = &notice;
+  for (const auto& notice : notices) {
+    if (notice.id != 0 && Means(command, notice) && (meant == nullptr || meant->raised < notice.raised)) meant = &notice;
   }
-  return meant == nullptr ? std::vector<std::int64_t>{} : std::vector{KeyOf(*meant)};
+  Commands commands;
+  if (command.is_alarm_number) {
+    if (meant != nullptr) commands.acknowledged = {KeyOf(*meant)};
+    return commands;
+  }
+  const char state = meant == nullptr ? 'N' : AlfStateOf(*meant);
+  if (command.kind == AlertCommand::Kind::kTellAgain && state != 'N') {
+    notices_.TellAgain(RaisedKeyOf(*meant));
+  } else if (command.kind == AlertCommand::Kind::kAcknowledge && params().takes_acknowledgements && (state == 'V' || state == 'S' || state == 'U')) {
+    commands.acknowledged = {KeyOf(*meant)};
+  } else if (command.kind == AlertCommand::Kind::kSilence && params().takes_acknowledgements && (state == 'V' || state == 'S')) {
+    commands.silences = true;
+  } else {
+    Refuse(command, told);
+  }
+  return commands;
+}
+
+void NmeaOutput::Refuse(const AlertCommand& command, const Told& told) {
+  if (refused_ && told.passed - *refused_ < kRefusalPeriod) return;
+  refused_ = told.passed;
+  Send(Arc(params().target_talker, command, told.host_time));
 }
 
 }  // namespace lookout::plotter

@@ -4,16 +4,22 @@
 #include <optional>
 #include <span>
 
+#include "services/plotter/core/alert_sentences.hpp"
 #include "services/plotter/core/notice_schedule.hpp"
 #include "services/plotter/core/target_schedule.hpp"
 #include "services/plotter/output.hpp"
+#include "services/plotter/revision_file.hpp"
 
 namespace lookout::plotter {
 
 class NmeaOutput : public Output {
  public:
-  NmeaOutput(const OutputParams& params, std::unique_ptr<Link> link, std::chrono::microseconds target_period)
-      : Output(params, std::move(link)), targets_(target_period) {}
+  /// Of HBT and ALC, which go with ALF. A warning that nobody has acknowledged for so long is raised again.
+  static constexpr std::chrono::seconds kListPeriod{30};
+  static constexpr std::chrono::minutes kEscalateAfter{5};
+
+  NmeaOutput(const OutputParams& params, std::unique_ptr<Link> link, std::chrono::microseconds target_period,
+             RevisionFile revisions = RevisionFile());
 
  private:
   void SendOwnShip(const Told& told) override;
@@ -22,14 +28,23 @@ class NmeaOutput : public Output {
   void SendAnew() override;
   /// They would not be there when a process that is begun again gives their numbers to others.
   void FinishTargets(const Told& told) override;
-  std::vector<std::int64_t> Read(const std::string& message, const Told& told) override;
+  Commands Read(const std::string& message, const Told& told) override;
 
   std::string Line(const Told& told, const Target& target, int number) const;
   void SendEnded(const Told& told, std::span<const Target> targets);
+  void SendList(const Told& told);
+  std::vector<Notice> AsTold(const Told& told) const;
+  Commands Obey(const AlertCommand& command, const Told& told);
+  void Refuse(const AlertCommand& command, const Told& told);
 
   TargetSchedule targets_;
   NoticeSchedule notices_;
-  int sequence_ = 0;  // of ALF
+  RevisionFile revisions_;
+  int sequence_ = 0;            // of ALF
+  int list_sequence_ = 0;       // of ALC
+  int heartbeat_sequence_ = 0;  // of HBT
+  std::optional<std::chrono::microseconds> list_sent_;
+  std::optional<std::chrono::microseconds> refused_;
   std::optional<std::chrono::microseconds> own_ship_sent_;
   std::optional<std::chrono::microseconds> repeat_sent_;
 };

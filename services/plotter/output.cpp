@@ -71,16 +71,18 @@ bool Output::Send(const std::string& message) {
   return true;
 }
 
-std::vector<std::int64_t> Output::TakeAcknowledged(const Told& told) {
+Commands Output::TakeCommands(const Told& told) {
   constexpr int kMostMessages = 8;  // a flood holds nobody up
-  std::vector<std::int64_t> keys;
+  Commands commands;
   for (int i = 0; i < kMostMessages; ++i) {
     const auto message = link_->Receive();
     if (!message) break;
-    const auto acknowledged = Read(*message, told);
-    if (params_.takes_acknowledgements) keys.insert(keys.end(), acknowledged.begin(), acknowledged.end());
+    const auto read = Read(*message, told);
+    if (!params_.takes_acknowledgements) continue;
+    commands.acknowledged.insert(commands.acknowledged.end(), read.acknowledged.begin(), read.acknowledged.end());
+    commands.silences = commands.silences || read.silences;
   }
-  return keys;
+  return commands;
 }
 
 }  // namespace lookout::plotter

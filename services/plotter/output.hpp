@@ -28,6 +28,12 @@ struct Told {
   Utime host_time;
 };
 
+/// What people asked for by messages that came back over an output.
+struct Commands {
+  std::vector<std::int64_t> acknowledged = {};  // notices by KeyOf
+  bool silences = false;                        // no sound for a while; alerts stay as they are
+};
+
 class Output {
  public:
   Output(OutputParams params, std::unique_ptr<Link> link) : params_(std::move(params)), link_(std::move(link)) {}
@@ -49,8 +55,8 @@ class Output {
   /// Ten times a second or more: due notices.
   void TellNotices(const Told& told);
 
-  /// Acknowledgements received since the last call: notices by KeyOf.
-  std::vector<std::int64_t> TakeAcknowledged(const Told& told);
+  /// Received since the last call; empty where they are not accepted.
+  Commands TakeCommands(const Told& told);
 
   /// Lines that could not be read.
   std::int64_t num_refused() const { return num_refused_; }
@@ -65,8 +71,8 @@ class Output {
   virtual void SendNotices(const Told& told) = 0;
   /// To a receiver that knows nothing yet.
   virtual void SendAnew() = 0;
-  /// A received message, whether or not acknowledgements are accepted. @return keys of notices that `message` acknowledges
-  virtual std::vector<std::int64_t> Read(const std::string& /*message*/, const Told& /*told*/) { return {}; }
+  /// A received message, whether or not commands are accepted.
+  virtual Commands Read(const std::string& /*message*/, const Told& /*told*/) { return {}; }
 
   /// @return false where the link has no room now, or a message that must not be lost waits: try again
   bool Send(const std::string& message);

@@ -32,7 +32,7 @@ std::unique_ptr<Link> Open(const std::string& name, const Destination& to, Links
 std::unique_ptr<Output> MakeOutput(const Params& params, const OutputParams& output, std::unique_ptr<Link> link) {
   switch (output.format) {
     case Format::kNmea0183:
-      return std::make_unique<NmeaOutput>(output, std::move(link), params.target_period);
+      return std::make_unique<NmeaOutput>(output, std::move(link), params.target_period, RevisionFile::Of(output.name));
     case Format::kSignalK:
       return std::make_unique<SignalKOutput>(output, std::move(link), params.boat);
     default:

@@ -195,13 +195,15 @@ void Service::AdvanceTo(Utime host_time) {
     // Again and again: an output that is closed now learns it when it is opened.
     if (!MayTellTargets()) StopTargets();
   }
-  TakeAcknowledgements();
+  TakeCommands();
 }
 
-void Service::TakeAcknowledgements() {
+void Service::TakeCommands() {
   std::erase_if(acknowledged_, [this](const auto& one) { return passed_.passed() - one.second >= kAcknowledgedFor; });
   for (const auto& output : outputs_) {
-    for (const auto key : output->TakeAcknowledged(ToldNow())) Acknowledge(key);
+    const auto commands = output->TakeCommands(ToldNow());
+    for (const auto key : commands.acknowledged) Acknowledge(key);
+    if (commands.silences) Silence();
   }
 }
 
@@ -215,6 +217,13 @@ void Service::Acknowledge(std::int64_t key) {
   if (!acknowledged_.emplace(key, passed_.passed()).second) return;
   bus::Publish(bus_, bus::kAlertAck, ToMessage(*notice, *now_, ack_seq_++));
   ++counts_["acks_sent"];
+}
+
+void Service::Silence() {
+  if (!now_ || (silenced_ && passed_.passed() - *silenced_ < kAcknowledgedFor)) return;
+  silenced_ = passed_.passed();
+  bus::Publish(bus_, bus::kOrders, ToSilence(*now_, order_seq_++));
+  ++counts_["silences_sent"];
 }
 
 void Service::Finish() {

@@ -53,15 +53,16 @@ class Service {
   void ComposeNotices();
   std::optional<Notice> OwnNotice() const;
   void TellNotices();
-  void TakeAcknowledgements();
+  void TakeCommands();
   void Acknowledge(std::int64_t key);
+  void Silence();
   Told ToldNow() const;
   bool IsFresh(std::optional<std::chrono::microseconds> seen) const;
   bool MayTellTargets() const;
   void StopTargets();
 
-  static constexpr auto kCountNames = std::to_array<std::string_view>(
-      {"tracks_incomplete", "tracks_inconsistent", "acks_sent", "acks_of_no_alert", "times_unwatched", "runs_begun", "names_refused"});
+  static constexpr auto kCountNames = std::to_array<std::string_view>({"tracks_incomplete", "tracks_inconsistent", "acks_sent", "acks_of_no_alert",
+                                                                       "silences_sent", "times_unwatched", "runs_begun", "names_refused"});
 
   bus::Bus& bus_;
   Params params_;
@@ -89,6 +90,8 @@ class Service {
   std::optional<std::chrono::microseconds> own_told_;
   std::optional<std::chrono::microseconds> notices_told_;
   std::int64_t ack_seq_ = 0;
+  std::int64_t order_seq_ = 0;
+  std::optional<std::chrono::microseconds> silenced_;               // sent last
   std::map<std::int64_t, std::chrono::microseconds> acknowledged_;  // by key, when
   Counts<kCountNames> counts_;
   Counts<kTracksFaults> tracks_refused_;

@@ -73,11 +73,11 @@ void SignalKOutput::EndLeftover(const NoticeEcho& echo, const Told& told) {
   SendSurely(NoticeDelta(ended, echo.word, told.host_time), echo.word);
 }
 
-std::vector<std::int64_t> SignalKOutput::Read(const std::string& message, const Told& told) {
+Commands SignalKOutput::Read(const std::string& message, const Told& told) {
   const auto read = ReadDelta(message);
   if (read.is_wrong) CountRefused();
   for (const auto& echo : read.echoes) EndLeftover(echo, told);
-  std::vector<std::int64_t> keys;
+  Commands commands;
   for (const auto& notice : told.notices) {
     const auto raised = raised_.find(RaisedKeyOf(notice));
     // A notice that was told as acknowledged or over went out without sound, and comes back so.
@@ -90,12 +90,12 @@ std::vector<std::int64_t> SignalKOutput::Read(const std::string& message, const 
       const bool is_quiet = echo.is_quiet && (is_loud || !echo.is_raised);
       return echo.word == raised->second.word && (echo.is_acknowledged || (is_active && is_quiet));
     });
-    if (is_acknowledged) keys.push_back(KeyOf(notice));
+    if (is_acknowledged) commands.acknowledged.push_back(KeyOf(notice));
     for (const auto& echo : read.echoes) {
       if (echo.word == raised->second.word && echo.is_raised && !echo.is_quiet) raised->second.is_heard_loud = true;
     }
   }
-  return keys;
+  return commands;
 }
 
 }  // namespace lookout::plotter

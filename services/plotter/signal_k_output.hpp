@@ -28,7 +28,7 @@ class SignalKOutput : public Output {
   void EndTargets(const Told& told) override;
   void SendNotices(const Told& told) override;
   void SendAnew() override;
-  std::vector<std::int64_t> Read(const std::string& message, const Told& told) override;
+  Commands Read(const std::string& message, const Told& told) override;
 
   void EndLeftover(const NoticeEcho& echo, const Told& told);
 

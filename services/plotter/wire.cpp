@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -195,6 +196,18 @@ alert_ack_t ToMessage(const Notice& notice, Utime host_time, std::int64_t seq) {
   message.source = "plotter";
   message.alert_id = notice.id;
   message.alert_raised_utime_us = ToUtimeUs(notice.raised);
+  return message;
+}
+
+order_t ToSilence(Utime host_time, std::int64_t seq) {
+  order_t message{};
+  message.utime_us = ToUtimeUs(host_time);
+  message.seq = seq;
+  message.source = "plotter";
+  message.kind = order_t::KIND_SILENCE;
+  for (auto* limit : {&message.guard_zone_range_m, &message.guard_zone_from_rad, &message.guard_zone_to_rad, &message.cpa_limit_m}) {
+    *limit = std::numeric_limits<float>::quiet_NaN();
+  }
   return message;
 }
 

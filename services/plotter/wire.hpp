@@ -14,6 +14,7 @@
 #include "common/messages/checks.hpp"
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/alerts_t.hpp"
+#include "lookout/order_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "services/plotter/core/scene.hpp"
@@ -55,5 +56,7 @@ std::optional<GivenNames> ToGivenNames(const alerts_t& message);
 OwnShip ToOwnShip(const pose_t& message);
 
 alert_ack_t ToMessage(const Notice& notice, Utime host_time, std::int64_t seq);
+/// The order that nothing sounds for a while.
+order_t ToSilence(Utime host_time, std::int64_t seq);
 
 }  // namespace lookout::plotter

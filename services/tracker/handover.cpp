@@ -1,10 +1,8 @@
 #include "services/tracker/handover.hpp"
 
 #include <chrono>
-#include <cstdlib>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/io/output_file.hpp"
+#include "common/io/runtime_folder.hpp"
 #include "common/messages/checks.hpp"
 
 namespace lookout::tracker {
@@ -53,12 +52,7 @@ std::optional<Legacy> ToLegacy(const alerts_t& alerts, const tracks_t& tracks) {
   return legacy;
 }
 
-Handover Handover::FromEnvironment() {
-  const char* folder = std::getenv("RUNTIME_DIRECTORY");
-  // systemd joins several by colons; a unit of this process has one.
-  if (folder == nullptr || std::string_view(folder).find(':') != std::string_view::npos) return Handover({});
-  return Handover(folder);
-}
+Handover Handover::FromEnvironment() { return Handover(io::RuntimeFolder()); }
 
 std::optional<Legacy> Handover::Read() try {
   if (folder_.empty() || !fs::is_regular_file(File())) return std::nullopt;

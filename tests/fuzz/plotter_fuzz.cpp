@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "services/plotter/core/alert_sentences.hpp"
 #include "services/plotter/core/nmea0183.hpp"
 #include "services/plotter/core/signal_k.hpp"
 
@@ -13,10 +14,10 @@ using namespace lookout::plotter;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  AcknowledgedNumber acknowledged;
-  ReadLine(text, acknowledged);
+  AlertCommand command;
+  ReadLine(text, command);
   const auto sentence = Sentence(text);
-  ReadLine(std::string_view(sentence).substr(0, sentence.size() - 2), acknowledged);
+  ReadLine(std::string_view(sentence).substr(0, sentence.size() - 2), command);
 
   for (const auto& echo : ReadDelta(text).echoes) {
     if (echo.word.size() > size) std::abort();

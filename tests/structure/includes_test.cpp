@@ -113,6 +113,7 @@ const std::vector<Rule>& Rules() {
       {"services/tracker/watch\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
       // A file that one process leaves to the next.
       {"services/tracker/handover\\..pp", {"common/core", "common/io", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
+      {"services/plotter/revision_file\\..pp", {"common/core", "common/io", "OWN", "OWN/core", "fmt"}},
       {"services/tracker/alert_text\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
       // One language each, over a link.
       {"services/plotter/([a-z0-9_]+_)?outputs?\\..pp", {"common/core", "OWN", "OWN/core", "OWN/io"}},

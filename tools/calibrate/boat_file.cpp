@@ -141,9 +141,10 @@ void WriteAngles(const std::filesystem::path& config_folder, const Angles& angle
     boat->mutable_lidar()->clear_pitch_deg();
     boat->mutable_lidar()->clear_yaw_deg();
   }
-  if (before.SerializeAsString() != after.SerializeAsString())
+  if (before.SerializeAsString() != after.SerializeAsString()) {
     throw std::runtime_error(file.string() +
                              ": the angles in lidar { } could not be replaced; nothing is written, put the lines above there by hand");
+  }
   io::OutputFile old(config_folder / "boat.txtpb.old");
   // Where boat.txtpb is a link, the file that it names is written.
   io::OutputFile output(std::filesystem::canonical(file), {.force = true});

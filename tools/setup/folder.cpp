@@ -122,6 +122,7 @@ std::vector<fs::path> WriteBoat(const fs::path& folder, const std::string& text,
   file.Prepare();
   const auto replaced = ReplacedFiles(folder);
   std::vector<fs::path> kept;
+  kept.reserve(replaced.size());
   for (const auto& old : replaced) kept.push_back(OldName(old));
   if (!replaced.empty() && replaced.front().filename() == kBoatFile) KeepCopy(replaced.front(), kept.front());
   // Sections of the new boat beside old files are refused by every process: a folder that was left in between starts nothing.

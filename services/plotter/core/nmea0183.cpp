@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <utility>
 
 #include "common/core/angles.hpp"
-#include "common/core/sentence.hpp"
 
 namespace lookout::plotter {
 
@@ -19,11 +16,6 @@ using namespace std::chrono_literals;
 
 constexpr double kMetresPerNauticalMile = 1852.0;
 constexpr double kSecondsPerHour = 3600.0;
-
-// Of this project's alerts in ALF and ACN: identifiers from 10000 on are free for makers, who name themselves by three letters.
-constexpr std::string_view kMaker = "LKO";
-constexpr int kFirstIdentifier = 10000;
-constexpr std::int64_t kMostInstance = 999'999;
 
 double MetresIn(Unit unit) { return unit == Unit::kKilometres ? 1000.0 : kMetresPerNauticalMile; }
 char LetterOf(Unit unit) { return unit == Unit::kKilometres ? 'K' : 'N'; }
@@ -44,13 +36,6 @@ std::string Degrees(double angle_rad) {
 }
 
 std::string Speed(double speed_mps, Unit unit) { return Number(speed_mps * kSecondsPerHour / MetresIn(unit), 2); }
-
-// hhmmss.ss, cut, not rounded: 59.999 s is no 60.00.
-std::string TimeOfDay(Utime time) {
-  const auto since_midnight = time - std::chrono::floor<std::chrono::days>(time);
-  const std::chrono::hh_mm_ss parts(std::chrono::floor<std::chrono::microseconds>(since_midnight));
-  return fmt::format("{:02}{:02}{:02}.{:02}", parts.hours().count(), parts.minutes().count(), parts.seconds().count(), parts.subseconds() / 10ms);
-}
 
 std::string Date(Utime time) {
   const std::chrono::year_month_day day(std::chrono::floor<std::chrono::days>(time));
@@ -81,13 +66,6 @@ char LetterOf(TargetState state) {
   }
 }
 
-// How long a text between `before` and `after` may be.
-std::size_t RoomFor(std::string_view before, std::string_view after) {
-  constexpr std::size_t kFrame = 6;  // $ * two digits CR LF
-  const auto used = before.size() + after.size() + kFrame;
-  return used < kMaxSentenceBytes ? kMaxSentenceBytes - used : 0;
-}
-
 // The name where it fits, else the number at its end.
 std::string NameWithin(const Target& target, std::size_t max_bytes) {
   const auto& name = AsciiNameOf(target, max_bytes);
@@ -96,63 +74,19 @@ std::string NameWithin(const Target& target, std::size_t max_bytes) {
   return FieldText(last_word == std::string::npos ? name : name.substr(last_word + 1), max_bytes);
 }
 
-// The text of an alert within a sentence: all of it where it fits; else in short words, first those that cost least; else up to the end of a word,
-// since who, where and how far stand first.
-std::string AlertWithin(std::string text, std::size_t max_bytes) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kShort{{{" in the guard zone", " in zone"},
-                                                                                 {"closest approach", "CPA"},
-                                                                                 {" deg to starboard", " deg stbd"},
-                                                                                 {" deg to port", " deg port"},
-                                                                                 {", ", " "}}};
-  for (const auto& [words, shorter] : kShort) {
-    for (auto place = text.find(words); text.size() > max_bytes && place != std::string::npos; place = text.find(words)) {
-      text.replace(place, words.size(), shorter);
-    }
-  }
-  if (text.size() > max_bytes) {
-    const auto end_of_word = text.rfind(' ', max_bytes);
-    text.resize(end_of_word == std::string::npos || end_of_word == 0 ? max_bytes : end_of_word);
-    while (!text.empty() && std::string_view(" ,;:-").find(text.back()) != std::string_view::npos) text.pop_back();
-  }
-  return FieldText(text, max_bytes);
-}
-
-// The cause that weighs most may change while one thing stays dangerous: a receiver that was told of it by one identifier must be told of its end by
-// the same.
-int IdentifierOf(Cause cause) { return kFirstIdentifier + static_cast<int>(cause == Cause::kGuardZone ? Cause::kClosestApproach : cause); }
-
-// 1 to 999999; the watch's ids run from -1 down, and of the plotter's own there is one of a cause.
-std::int64_t InstanceOf(const Notice& notice) { return notice.id == 0 ? 1 : (std::abs(notice.id) - 1) % kMostInstance + 1; }
-
-std::string_view TitleOf(Cause cause) {
-  switch (cause) {
-    case Cause::kGuardZone:
-    case Cause::kClosestApproach:
-      return "CLOSE APPROACH";
-    case Cause::kPosition:
-      return "NO OWN POSITION";
-    case Cause::kPartUnseen:
-      return "LOOK-OUT GAP";
-    default:
-      return "NO LOOK-OUT";
-  }
-}
-
-// Active and acknowledged, or a caution, which wants none: A; not acknowledged: V, silenced: S; over and not acknowledged: U; over: N (IEC 61924-2).
-char AlfStateOf(const Notice& notice) {
-  switch (notice.state) {
-    case NoticeState::kActive:
-      return notice.level == Level::kCaution ? 'A' : notice.sound == Sound::kSilenced ? 'S' : 'V';
-    case NoticeState::kAcknowledged:
-      return 'A';
-    case NoticeState::kRectified:
-      return 'U';
-    default:
-      return 'N';
-  }
-}
-
 }  // namespace
+
+std::size_t RoomFor(std::string_view before, std::string_view after) {
+  constexpr std::size_t kFrame = 6;  // $ * two digits CR LF
+  const auto used = before.size() + after.size() + kFrame;
+  return used < kMaxSentenceBytes ? kMaxSentenceBytes - used : 0;
+}
+
+std::string TimeOfDay(Utime time) {
+  const auto since_midnight = time - std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::hh_mm_ss parts(std::chrono::floor<std::chrono::microseconds>(since_midnight));
+  return fmt::format("{:02}{:02}{:02}.{:02}", parts.hours().count(), parts.minutes().count(), parts.seconds().count(), parts.subseconds() / 10ms);
+}
 
 std::string Sentence(std::string_view body) {
   unsigned checksum = 0;
@@ -204,58 +138,6 @@ std::string Tll(std::string_view talker, const Target& target, int number, Utime
   const auto before = fmt::format("{}TLL,{:02},{},", talker, number, PositionFields(target.position));
   const auto after = fmt::format(",{},{},", TimeOfDay(time), LetterOf(target.state));
   return Sentence(before + NameWithin(target, RoomFor(before, after)) + after);
-}
-
-int AlarmNumber(const Notice& notice) {
-  constexpr std::int64_t kMost = 997;
-  constexpr int kOwnWatch = 998;
-  constexpr int kOwnPosition = 999;
-  if (notice.id == 0) return notice.cause == Cause::kPosition ? kOwnPosition : kOwnWatch;
-  return notice.id < 0 ? 0 : static_cast<int>((notice.id - 1) % kMost + 1);
-}
-
-std::string Alr(std::string_view talker, const Notice& notice, Utime time) {
-  const bool holds = notice.state == NoticeState::kActive || notice.state == NoticeState::kAcknowledged;
-  const bool is_acknowledged = notice.state == NoticeState::kAcknowledged || notice.state == NoticeState::kCleared;
-  const auto before =
-      fmt::format("{}ALR,{},{:03},{},{},", talker, TimeOfDay(time), AlarmNumber(notice), holds ? 'A' : 'V', is_acknowledged ? 'A' : 'V');
-  return Sentence(before + AlertWithin(notice.text, RoomFor(before, "")));
-}
-
-std::string Alf(std::string_view talker, const Notice& notice, Utime time, int sequence, int revision) {
-  const auto title =
-      fmt::format("{}ALF,2,1,{},{},B,{},{},{},{},{},{},0,{}", talker, sequence, TimeOfDay(time), notice.level == Level::kCaution ? 'C' : 'W',
-                  AlfStateOf(notice), kMaker, IdentifierOf(notice.cause), InstanceOf(notice), revision, TitleOf(notice.cause));
-  const auto before = fmt::format("{}ALF,2,2,{},,,,,,,,,,", talker, sequence);
-  return Sentence(title) + Sentence(before + AlertWithin(notice.text, RoomFor(before, "")));
-}
-
-LineKind ReadLine(std::string_view line, AcknowledgedNumber& acknowledged) {
-  constexpr std::size_t kTalkerBytes = 2;
-  const auto framed = Frame(line);
-  if (framed.fault != SentenceFault::kNone) return LineKind::kWrong;
-  const auto address = framed.sentence.address;
-  const auto type = address.size() > kTalkerBytes ? address.substr(kTalkerBytes) : std::string_view();
-  FieldReader fields(framed.sentence.fields);
-  acknowledged = {};
-  if (type == "ACK") {
-    acknowledged.is_alarm_number = true;
-    acknowledged.number = fields.Count(0, 999);
-    return fields.fault() == SentenceFault::kNone && acknowledged.number >= 0 ? LineKind::kAcknowledgement : LineKind::kWrong;
-  }
-  if (type != "ACN") return LineKind::kOther;
-  // hhmmss.ss, maker, identifier, instance, command (A: acknowledge; Q, O, S: ask, hand over, silence), status C.
-  const auto maker = fields.Text(1);
-  acknowledged.identifier = fields.Count(2, 9'999'999);
-  acknowledged.number = fields.Count(3, static_cast<int>(kMostInstance));
-  const auto command = fields.Letter(4, "AQOS");
-  if (fields.fault() != SentenceFault::kNone || acknowledged.identifier < 0 || acknowledged.number < 0) return LineKind::kWrong;
-  return maker == kMaker && command == 'A' ? LineKind::kAcknowledgement : LineKind::kOther;
-}
-
-bool Means(const AcknowledgedNumber& acknowledged, const Notice& notice) {
-  if (acknowledged.is_alarm_number) return acknowledged.number == AlarmNumber(notice);
-  return acknowledged.identifier == IdentifierOf(notice.cause) && acknowledged.number == InstanceOf(notice);
 }
 
 }  // namespace lookout::plotter

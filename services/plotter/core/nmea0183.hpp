@@ -1,5 +1,5 @@
-// Sentences of NMEA 0183 for the own ship, targets and alerts. Each ends with CR LF and has at most 82 characters, as the standard has it, whatever
-// the texts in it are.
+// Sentences of NMEA 0183 for the own ship and targets; those of alerts: alert_sentences. Each ends with CR LF and has at most 82 characters, as the
+// standard has it, whatever the texts in it are.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,12 @@ std::string Sentence(std::string_view body);
 /// A text as a field: a character reserved in a sentence ($ * , ! \ ^ ~), a control character or one that is no ASCII becomes a space.
 std::string FieldText(std::string_view text, std::size_t max_bytes);
 
+/// Bytes of text that fit between `before` and `after` in one sentence.
+std::size_t RoomFor(std::string_view before, std::string_view after);
+
+/// hhmmss.ss, cut, not rounded: 59.999 s is no 60.00.
+std::string TimeOfDay(Utime time);
+
 /// Position, speed and course. Without a position it is void (V), with empty fields; where that is estimated it is void, too, with mode E.
 std::string Rmc(std::string_view talker, const OwnShip& own);
 /// True heading. nullopt while it is not known, or estimated.
@@ -39,31 +45,5 @@ std::string Osd(std::string_view talker, const OwnShip& own, Unit unit);
 std::string Ttm(std::string_view talker, const OwnShip& own, const Target& target, int number, Unit unit);
 /// Target latitude and longitude.
 std::string Tll(std::string_view talker, const Target& target, int number, Utime time);
-
-/// Number of an alert in ALR and ACK: 001 to 997; 000 is the tracker's watch, 998 that of the plotter, 999 that there is no position.
-int AlarmNumber(const Notice& notice);
-/// Alarm: threshold exceeded (A) while it holds, acknowledged (A) or not (V).
-std::string Alr(std::string_view talker, const Notice& notice, Utime time);
-/// Alert: two sentences, the title and the text.
-///
-/// @param sequence  0 to 9, one more for each alert that is sent
-/// @param revision  1 to 99, one more with each change of the alert
-std::string Alf(std::string_view talker, const Notice& notice, Utime time, int sequence, int revision);
-
-/// Which alert is meant by a line that acknowledges: by number (ACK) or by identifier and instance (ACN).
-struct AcknowledgedNumber {
-  bool is_alarm_number = false;  // ACK
-  std::int64_t number = 0;       // AlarmNumber, or the instance
-  int identifier = 0;            // of ACN
-};
-
-enum class LineKind { kAcknowledgement, kOther, kWrong };
-
-/// @param line  without CR LF
-/// @return kWrong: no sentence, or an ACK or ACN that cannot be read
-LineKind ReadLine(std::string_view line, AcknowledgedNumber& acknowledged);
-
-/// Whether that line meant this alert.
-bool Means(const AcknowledgedNumber& acknowledged, const Notice& notice);
 
 }  // namespace lookout::plotter

@@ -1,5 +1,6 @@
 #include "services/plotter/core/notice_schedule.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -14,7 +15,9 @@ constexpr int kMostRevision = 99;
 constexpr int kRepeats = 2;
 constexpr auto kRepeatAfter = 3s;
 
-bool HasChanged(const Notice& one, const Notice& other) { return one.level != other.level || one.state != other.state || one.sound != other.sound; }
+bool HasChanged(const Notice& one, const Notice& other) {
+  return one.level != other.level || one.state != other.state || one.sound != other.sound || one.escalation != other.escalation;
+}
 
 int Next(int revision) { return revision % kMostRevision + 1; }
 
@@ -48,6 +51,21 @@ void NoticeSchedule::RepeatEnded(std::chrono::microseconds now, std::vector<Due>
   }
 }
 
+// What is dangerous again is the same alert: its end is told no more.
+int NoticeSchedule::FirstRevision(const RaisedKey& key, const Notice& notice) {
+  const auto ended = std::ranges::find(ended_, key, [](const Ended& one) { return RaisedKeyOf(one.sent.notice); });
+  if (ended != ended_.end()) {
+    const int revision = Next(ended->sent.revision);
+    ended_.erase(ended);
+    return revision;
+  }
+  const auto recalled = recalled_.find(key);
+  if (recalled == recalled_.end()) return 1;
+  const auto before = recalled->second;
+  recalled_.erase(recalled);
+  return HasChanged(before.notice, notice) ? Next(before.revision) : before.revision;
+}
+
 std::vector<NoticeSchedule::Due> NoticeSchedule::Take(std::span<const Notice> notices, std::chrono::microseconds now) {
   std::vector<Due> due;
   std::set<RaisedKey> keys;
@@ -58,8 +76,9 @@ std::vector<NoticeSchedule::Due> NoticeSchedule::Take(std::span<const Notice> no
     const auto found = sent_.find(key);
     if (found == sent_.end()) {
       if (notice.state == NoticeState::kCleared) continue;  // nobody was told of it, or it was told already
-      due.push_back({notice, 1, false});
-      sent_.emplace(key, Sent{notice, 1, now + kPeriod});
+      const int revision = FirstRevision(key, notice);
+      due.push_back({notice, revision, false});
+      sent_.emplace(key, Sent{notice, revision, now + kPeriod});
       continue;
     }
     Sent& sent = found->second;
@@ -94,6 +113,21 @@ void NoticeSchedule::SendAnew() {
     one.sent.next = {};
     one.num_repeats = kRepeats - 1;
   }
+}
+
+std::vector<ToldNotice> NoticeSchedule::Standing() const {
+  std::vector<ToldNotice> standing;
+  standing.reserve(sent_.size());
+  for (const auto& [key, sent] : sent_) standing.push_back({sent.notice, sent.revision});
+  return standing;
+}
+
+void NoticeSchedule::TellAgain(const RaisedKey& key) {
+  if (const auto found = sent_.find(key); found != sent_.end()) found->second.next = {};
+}
+
+void NoticeSchedule::Recall(std::span<const ToldNotice> notices) {
+  for (const auto& told : notices) recalled_.emplace(RaisedKeyOf(told.notice), told);
 }
 
 }  // namespace lookout::plotter

@@ -22,9 +22,15 @@ RaisedKey RaisedKeyOf(const Notice& notice);
 /// The same as a text.
 std::string SubjectOf(const Notice& notice);
 
-/// A notice is due when it is new, when its level, its state or its sound has changed, and every kPeriod while it is not cleared. A notice that is
-/// gone is told as cleared; an old one (is_old) is left as it was told. A clearing is told twice more, and to each new receiver for kEndedFor: else
-/// one lost message leaves an alarm standing. Time is host time passed.
+/// A notice as it was told last.
+struct ToldNotice {
+  Notice notice;
+  int revision = 1;  // 1 to 99: goes up with each change
+};
+
+/// A notice is due when it is new, when its level, its state, its sound or its escalation has changed, and every kPeriod while it is not cleared. A
+/// notice that is gone is told as cleared; an old one (is_old) is left as it was told. A clearing is told twice more, and to each new receiver for
+/// kEndedFor: else one lost message leaves an alarm standing. Time is host time passed.
 class NoticeSchedule {
  public:
   static constexpr std::chrono::seconds kPeriod{10};
@@ -43,6 +49,14 @@ class NoticeSchedule {
   /// A new receiver knows of none.
   void SendAnew();
 
+  /// Those that were told and are not over, by KeyOf.
+  std::vector<ToldNotice> Standing() const;
+  /// With the next Take.
+  void TellAgain(const RaisedKey& key);
+
+  /// Of the process before: its notices keep their revisions, and one that changed meanwhile has the next. No notice is made of them.
+  void Recall(std::span<const ToldNotice> notices);
+
  private:
   struct Sent {
     Notice notice;
@@ -54,10 +68,12 @@ class NoticeSchedule {
     std::chrono::microseconds ended{0};
     int num_repeats = 0;
   };
+  int FirstRevision(const RaisedKey& key, const Notice& notice);
   void End(Sent sent, std::chrono::microseconds now, std::vector<Due>& due);
   void RepeatEnded(std::chrono::microseconds now, std::vector<Due>& due);
 
   std::map<RaisedKey, Sent> sent_;
+  std::map<RaisedKey, ToldNotice> recalled_;
   std::vector<Ended> ended_;  // the oldest first
 };
 

@@ -71,6 +71,7 @@ struct Notice {
   Utime raised;
   Utime changed;
   Sound sound = Sound::kQuiet;  // one of all sounds; silenced is a warning that would
+  int escalation = 0;           // how often it was raised again because nobody acknowledged it, 0 to 9; after 9 comes 1
   std::string text;
   bool is_old = false;  // nobody knows whether it still holds: it is neither told again nor cleared
 

@@ -1,9 +1,12 @@
 // Own ship, targets and alerts made up, for tests.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <numbers>
 #include <string>
+#include <string_view>
 
+#include "common/core/sentence.hpp"
 #include "services/plotter/core/scene.hpp"
 
 namespace lookout::plotter::test {
@@ -45,6 +48,13 @@ inline Notice MakeNotice(std::int64_t id = 3) {
           .raised = kTime,
           .changed = kTime,
           .text = "boat 17: closest approach 3 m in 21 s, 40 deg to starboard"};
+}
+
+/// One sentence without checksum and CR LF, which must be right.
+inline std::string Line(const std::string& sentence) {
+  EXPECT_TRUE(sentence.ends_with("\r\n"));
+  EXPECT_EQ(Frame(std::string_view(sentence).substr(0, sentence.size() - 2)).fault, SentenceFault::kNone);
+  return sentence.substr(0, sentence.size() - 5);
 }
 
 }  // namespace lookout::plotter::test

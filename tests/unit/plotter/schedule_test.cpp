@@ -167,5 +167,36 @@ TEST(PlotterNoticeSchedule, LeavesWhatIsOldAsItWasTold) {
   EXPECT_EQ(schedule.Take(notices, 31s).size(), 1U);
 }
 
+// Dangerous again within 10 s it is the same alert: a receiver that heard "over" of it afterwards took it off.
+TEST(PlotterNoticeSchedule, TellsNoEndOfWhatIsThereAgain) {
+  NoticeSchedule schedule;
+  const std::vector<Notice> notices{MakeNotice(3)};
+  EXPECT_EQ(schedule.Take(notices, 0s).at(0).revision, 1);
+  EXPECT_EQ(schedule.Take({}, 1s).at(0).revision, 2);
+  const auto again = schedule.Take(notices, 2s);
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again[0].notice.state, NoticeState::kActive);
+  EXPECT_EQ(again[0].revision, 3);
+  for (auto now = 2100ms; now < 11s; now += 100ms) EXPECT_TRUE(schedule.Take(notices, now).empty());
+}
+
+TEST(PlotterNoticeSchedule, GoesOnWithTheRevisionsOfTheProcessBefore) {
+  NoticeSchedule before;
+  std::vector<Notice> notices{MakeNotice(3), MakeNotice(4), MakeNotice(5)};
+  before.Take(notices, 0s);
+  notices[0].state = notices[1].state = NoticeState::kAcknowledged;
+  before.Take(notices, 1s);
+  NoticeSchedule schedule;
+  schedule.Recall(before.Standing());
+  notices[1].state = NoticeState::kRectified;
+  notices.push_back(MakeNotice(6));
+  const auto due = schedule.Take(notices, 0s);
+  ASSERT_EQ(due.size(), 4U);
+  EXPECT_EQ(due[0].revision, 2) << "unchanged";
+  EXPECT_EQ(due[1].revision, 3) << "changed meanwhile";
+  EXPECT_EQ(due[2].revision, 1);
+  EXPECT_EQ(due[3].revision, 1);
+}
+
 }  // namespace
 }  // namespace lookout::plotter

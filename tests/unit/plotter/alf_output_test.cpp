@@ -1,0 +1,127 @@
+// An output that tells of alerts by ALF, with the list, the heartbeat and the commands that belong to it.
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "lookout/order_t.hpp"
+#include "services/plotter/core/alert_sentences.hpp"
+#include "tests/support/files.hpp"
+#include "tests/unit/plotter/fixture.hpp"
+
+namespace lookout::plotter {
+namespace {
+
+std::string Received(const std::string& body) {
+  auto sentence = Sentence(body);
+  sentence.resize(sentence.size() - 2);
+  return sentence;
+}
+
+class AlfOutput : public test::ServiceFixture {
+ protected:
+  void SetUp() override { StartWith(true); }
+
+  void StartWith(bool takes_acknowledgements) {
+    auto link = std::make_unique<test::KeepingLink>();
+    link_ = link.get();
+    std::vector<std::unique_ptr<Output>> outputs;
+    outputs.push_back(
+        std::make_unique<NmeaOutput>(OutputParams{.name = "bridge", .alerts = SentAlerts::kAlf, .takes_acknowledgements = takes_acknowledgements},
+                                     std::move(link), params_.target_period, RevisionFile(folder_ / "alerts.txt")));
+    NewBus();
+    bus::Subscribe<order_t>(*bus_, bus::kOrders, [this](const order_t& message) { ordered_.push_back(message); });
+    service_ = std::make_unique<Service>(*bus_, params_, std::move(outputs));
+    service_->AdvanceTo(Now());
+  }
+
+  std::vector<std::string> Answers(const std::string& body) {
+    link_->sent.clear();
+    link_->received = {Received(body)};
+    Wait(200'000);
+    return link_->With("ARC");
+  }
+
+  support::TempDir folder_;
+  test::KeepingLink* link_ = nullptr;
+  std::vector<order_t> ordered_;
+};
+
+TEST_F(AlfOutput, ListsWhatStandsAndSaysThatItLives) {
+  alerts_ = {MakeAlert(3), MakeAlert(4)};
+  Run(300'000);
+  ASSERT_EQ(link_->With("HBT").size(), 1U) << "a new receiver need not wait";
+  link_->sent.clear();
+  alerts_[0].state = alert_t::STATE_ACKNOWLEDGED;
+  Run(31'000'000);
+  ASSERT_EQ(link_->With("RAHBT,30,A,").size(), 1U);
+  ASSERT_EQ(link_->With("RAALC,01,01,01,2,LKO,10002,3,2,LKO,10002,4,1*").size(), 1U);
+  link_->sent.clear();
+  Wait(31'000'000);  // the tracker is silent
+  EXPECT_FALSE(link_->With("RAHBT,30,V,").empty());
+  EXPECT_FALSE(link_->With(",LKO,10002,3,2,").empty()) << "nobody knows that it is over";
+}
+
+TEST_F(AlfOutput, ObeysCommandsThatFitAndRefusesOthers) {
+  alerts_ = {MakeAlert(3), MakeAlert(4, alert_t::STATE_ACKNOWLEDGED)};
+  Run(300'000);
+  EXPECT_TRUE(Answers("CAACN,102031.00,LKO,10002,3,A,C").empty());
+  ASSERT_EQ(acknowledged_.size(), 1U);
+  EXPECT_EQ(acknowledged_[0].alert_id, 3);
+  EXPECT_TRUE(Answers("CAACN,102031.00,LKO,10002,4,Q,C").empty());
+  EXPECT_EQ(link_->With(",B,W,A,LKO,10002,4,1,0,").size(), 1U);
+  EXPECT_TRUE(link_->With(",LKO,10002,3,1,0,").empty());
+  EXPECT_TRUE(Answers("CAACN,102031.00,LKO,10002,3,S,C").empty());
+  ASSERT_EQ(ordered_.size(), 1U);
+  EXPECT_EQ(ordered_[0].kind, order_t::KIND_SILENCE);
+  EXPECT_EQ(acknowledged_.size(), 1U) << "silence is no acknowledgement";
+
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10002,4,A,C").size(), 1U) << "acknowledged already";
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10002,3,O,C").size(), 1U) << "who looks out cannot hand it over";
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10002,77,Q,C").size(), 1U) << "of no alert";
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10002,77,A,C").at(0).find("$RAARC,"), 0U);
+  EXPECT_TRUE(Answers("CAACN,102031.00,XYZ,10002,77,A,C").empty()) << "of another maker";
+  EXPECT_EQ(acknowledged_.size(), 1U);
+  link_->sent.clear();
+  for (int i = 0; i < 1000; ++i) link_->received.push_back(Received("CAACN,102031.00,LKO,10002,77,A,C"));
+  Wait(1'000'000);
+  EXPECT_LE(link_->With("ARC").size(), 11U) << "a flood is not answered line by line";
+}
+
+TEST_F(AlfOutput, RefusesAllThatSilencesWhereTheConfigTakesNone) {
+  StartWith(false);
+  alerts_ = {MakeAlert(3)};
+  Run(300'000);
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10002,3,A,C").size(), 1U);
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10002,3,S,C").size(), 1U);
+  EXPECT_TRUE(Answers("CAACN,102031.00,LKO,10002,3,Q,C").empty());
+  EXPECT_TRUE(acknowledged_.empty());
+  EXPECT_TRUE(ordered_.empty());
+}
+
+TEST_F(AlfOutput, RaisesAgainWhatNobodyAcknowledges) {
+  alerts_ = {MakeAlert(3)};
+  Run(290'000'000);
+  EXPECT_TRUE(link_->With(",LKO,10002,3,2,").empty());
+  Run(20'000'000);
+  EXPECT_FALSE(link_->With(",B,W,V,LKO,10002,3,2,1,").empty());
+  alerts_[0].state = alert_t::STATE_ACKNOWLEDGED;
+  link_->sent.clear();
+  Run(300'000);
+  EXPECT_EQ(link_->With(",B,W,A,LKO,10002,3,3,0,").size(), 1U);
+}
+
+TEST_F(AlfOutput, GoesOnWithItsRevisionsAfterARestart) {
+  alerts_ = {MakeAlert(3)};
+  Run(300'000);
+  alerts_[0].state = alert_t::STATE_ACKNOWLEDGED;
+  Run(300'000);
+  StartWith(true);
+  Run(300'000);
+  EXPECT_EQ(link_->With(",B,W,A,LKO,10002,3,2,0,").size(), 1U);
+  std::ofstream(folder_ / "alerts.txt") << "3 2 damaged";
+  StartWith(true);
+  Run(300'000);
+  EXPECT_EQ(link_->With(",B,W,A,LKO,10002,3,1,0,").size(), 1U) << "a damaged file keeps nobody from being told";
+}
+
+}  // namespace
+}  // namespace lookout::plotter
