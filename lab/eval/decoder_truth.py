@@ -9,8 +9,6 @@ Of each sensor it tells how many points have a return of ours at the same place:
 the azimuths differ: that decoder leaves out by how much the head turns between the lasers of a block.
 """
 import pathlib
-import sqlite3
-import struct
 import subprocess
 import sys
 import tempfile
@@ -30,55 +28,6 @@ HESAI = {
 }
 VELODYNE = {"VLS-128": ("MODEL_VLS128", "vls128", None), "VLP-32C": ("MODEL_VLP32C", "vlp32", None)}
 SAME_M = 0.001
-PANDAR_BYTES = 1500
-VELODYNE_BYTES = 1206
-
-
-class Cdr:
-    """Reads a message of ROS 2."""
-
-    def __init__(self, data):
-        self.data, self.at = data, 4  # behind the encapsulation header, from which alignment counts
-
-    def number(self, form):
-        size = struct.calcsize(form)
-        self.at += (4 - self.at) % size
-        (value,) = struct.unpack_from("<" + form, self.data, self.at)
-        self.at += size
-        return value
-
-    def take(self, size):
-        self.at += size
-        return self.data[self.at - size : self.at]
-
-
-def packets_of(data, kind):
-    """(time in s, bytes) of each packet of one message."""
-    message = Cdr(data)
-    message.number("i"), message.number("I")
-    message.take(message.number("I"))
-    for _ in range(message.number("I")):
-        time = message.number("i") + 1e-9 * message.number("I")
-        if "velodyne" in kind:
-            yield time, message.take(VELODYNE_BYTES)
-        elif "pandar" in kind:
-            packet = message.take(PANDAR_BYTES)
-            yield time, packet[: message.number("I")]
-        else:
-            yield time, message.take(message.number("I"))
-
-
-def write_capture(recording, file):
-    """Raw IPv4 with UDP to port 2368. No checksums: the reader needs none."""
-    connection = sqlite3.connect(recording)
-    (kind,) = connection.execute("SELECT type FROM topics").fetchone()
-    with open(file, "wb") as out:
-        out.write(struct.pack("<IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 101))
-        for (data,) in connection.execute("SELECT data FROM messages ORDER BY timestamp"):
-            for time, packet in packets_of(data, kind):
-                udp = struct.pack(">HHHH", 2368, 2368, 8 + len(packet), 0) + packet
-                frame = struct.pack(">BBHIBBH", 0x45, 0, 20 + len(udp), 0, 64, 17, 0) + bytes([192, 168, 1, 201, 192, 168, 1, 100]) + udp
-                out.write(struct.pack("<IIII", int(time), int(time % 1 * 1e6), len(frame), len(frame)) + frame)
 
 
 def points_of(file):
@@ -94,16 +43,19 @@ def points_of(file):
 
 def returns_of(folder, model, beam_file, recording):
     """Ring, azimuth (deg, clockwise), range (m), x, y, z of every return."""
-    write_capture(recording, folder / "capture.pcap")
-    config = f'source: CAPTURE capture_file: "{folder}/capture.pcap" model: {model} position_port: 10110\n'
+    config = f"model: {model} position_port: 10110\n"
     if beam_file:
         (folder / "angles.csv").write_bytes(beam_file.read_bytes())
         config += 'beam_file: "angles.csv"\n'
     (folder / "lidar.txtpb").write_text(config)
     (folder / "boat.txtpb").write_text(pathlib.Path("config/demo/boat.txtpb").read_text())
-    run = lambda *words: subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    run("build/release/bin/lookout-replay", "--config", folder, "--only", "lidar", "--in", folder / "capture.pcap", "--out", folder / "log")
-    run("build/release/bin/lookout-export", "--in", folder / "log", "--table", "returns", "--out", folder / "returns.csv")
+
+    def run(program, *words):
+        subprocess.run([f"build/release/bin/lookout-{program}", *words], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    run("import", "--config", folder, "--in", recording, "--out", folder / "packets")
+    run("replay", "--config", folder, "--only", "lidar", "--in", folder / "packets", "--out", folder / "scans")
+    run("export", "--in", folder / "scans", "--table", "returns", "--out", folder / "returns.csv")
     returns = np.genfromtxt(folder / "returns.csv", delimiter=",", skip_header=1, usecols=(2, 4, 5, 6, 7, 8))
     return returns[np.isfinite(returns).all(axis=1)]
 
@@ -112,6 +64,11 @@ def compare_places(points, returns):
     # That decoder has y ahead and x to starboard; the lidar's frame here has x ahead and y to port.
     distance_m, _ = cKDTree(returns[:, 3:]).query(np.stack([points[:, 1], -points[:, 0], points[:, 2]], axis=1))
     return f"{np.mean(distance_m < SAME_M):.6f} of the points are ours, farthest {1000 * distance_m.max():.2f} mm"
+
+
+def in_one_space(range_m, azimuth_rad):
+    """A range that differs by a step is far, an azimuth by a degree near."""
+    return np.stack([range_m / SAME_M, 60 * np.cos(azimuth_rad), 60 * np.sin(azimuth_rad)], axis=1)
 
 
 def compare_rings(points, returns):
@@ -128,9 +85,7 @@ def compare_rings(points, returns):
         theirs = nearest == i
         if not theirs.any():
             continue
-        # In one space: a range that differs by a step is far.
-        place = lambda m, rad: np.stack([m / SAME_M, 60 * np.cos(rad), 60 * np.sin(rad)], axis=1)
-        _, found = cKDTree(place(ours[:, 2], np.radians(ours[:, 1]))).query(place(range_m[theirs], azimuth_rad[theirs]))
+        _, found = cKDTree(in_one_space(ours[:, 2], np.radians(ours[:, 1]))).query(in_one_space(range_m[theirs], azimuth_rad[theirs]))
         is_same = np.abs(ours[found, 2] - range_m[theirs]) < SAME_M
         num_same += is_same.sum()
         apart_deg.append(np.abs((np.degrees(azimuth_rad[theirs]) - ours[found, 1] + 180) % 360 - 180)[is_same])

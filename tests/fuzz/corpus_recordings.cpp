@@ -49,7 +49,7 @@ void WriteRecordings(const std::filesystem::path& root) {
   WriteScanFolders(root);
   const Folder messages(root / "fuzz_ros_message");
   for (const auto encoding : {Encoding::kRos1, Encoding::kCdr}) {
-    const auto first = static_cast<std::uint8_t>(encoding == Encoding::kRos1 ? 0 : 8);
+    const auto first = static_cast<std::uint8_t>(encoding == Encoding::kRos1 ? 0 : 12);
     const auto write = [&](std::uint8_t kind, const Payload& bytes) {
       messages.Write(std::to_string(first + kind), Payload{static_cast<std::uint8_t>(first + kind)} + bytes);
     };
@@ -62,6 +62,9 @@ void WriteRecordings(const std::filesystem::path& root) {
     write(3, made::MakeFix(encoding, 45.0, 9.0));
     write(4, made::MakeSentence(encoding, "$GPHDT,90.0,T*0C"));
     write(6, made::MakeTwist(encoding, 1.0, 2.0));
+    write(8, made::MakeHesaiPackets(encoding, 2, true));
+    write(9, made::MakeHesaiPackets(encoding, 2, false));
+    write(10, made::MakeOusterPacket(encoding, 7));
   }
 }
 

@@ -16,10 +16,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Use use;
     std::string_view type;
   };
-  constexpr std::array kKinds{
-      Kind{Use::kLidarScan, kTypePointCloud}, Kind{Use::kLidarPackets, kTypeVelodyneScan},   Kind{Use::kImu, kTypeImu},
-      Kind{Use::kFix, kTypeNavSatFix},        Kind{Use::kSentences, kTypeSentence},          Kind{Use::kSentences, kTypeString},
-      Kind{Use::kVelocity, kTypeTwist},       Kind{Use::kVelocity, kTypeTwistWithCovariance}};
+  constexpr std::array kKinds{Kind{Use::kLidarScan, kTypePointCloud},
+                              Kind{Use::kLidarPackets, kTypeVelodyneScan},
+                              Kind{Use::kImu, kTypeImu},
+                              Kind{Use::kFix, kTypeNavSatFix},
+                              Kind{Use::kSentences, kTypeSentence},
+                              Kind{Use::kSentences, kTypeString},
+                              Kind{Use::kVelocity, kTypeTwist},
+                              Kind{Use::kVelocity, kTypeTwistWithCovariance},
+                              Kind{Use::kLidarPackets, kTypePandarScan},
+                              Kind{Use::kLidarPackets, kTypeNebulaPackets},
+                              Kind{Use::kPositionPackets, kTypesOusterPacket[0]},
+                              Kind{Use::kLidarScan, kTypesLivox[0]}};
   const auto& kind = kKinds.at(data[0] % kKinds.size());
   const Topic topic{"/topic", std::string(kind.type), data[0] / kKinds.size() % 2 == 0 ? Encoding::kRos1 : Encoding::kCdr};
   LogMaker log({}, true, [](lookout::Utime, const lookout::bus::Channel&, lookout::Bytes bytes) {

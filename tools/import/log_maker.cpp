@@ -12,6 +12,7 @@ namespace lookout::importer {
 LogMaker::LogMaker(const lidar::Params& params, bool has_navigation, Write write)
     : write_(std::move(write)),
       data_port_(params.data_port),
+      position_port_(params.position_port),
       has_navigation_(has_navigation),
       bundler_(params.data_port, params.position_port, lidar::FormOf(params)) {}
 
@@ -57,6 +58,9 @@ void LogMaker::Release(Utime time, const ImportItem& item) {
   switch (item.kind) {
     case ImportItem::Kind::kPacket:
       if (const auto bundle = bundler_.Add(time, data_port_, item.bytes)) WriteBundle(*bundle);
+      return;
+    case ImportItem::Kind::kPositionPacket:
+      if (const auto bundle = bundler_.Add(time, position_port_, item.bytes)) WriteBundle(*bundle);
       return;
     case ImportItem::Kind::kSentence:
       return WriteNavigation(sequencer_.OnLines(time, {item.sentence}, item.source));

@@ -20,7 +20,7 @@ namespace lookout::importer {
 
 /// What a recording holds of one instant.
 struct ImportItem {
-  enum class Kind { kPacket, kSentence, kImu, kScanPart };
+  enum class Kind { kPacket, kPositionPacket, kSentence, kImu, kScanPart };
   Kind kind = Kind::kPacket;
   std::vector<std::uint8_t> bytes;   // of a packet, or of a message of LIDAR_SCAN
   std::string sentence;              // of a sentence: navigator::IsLine
@@ -61,6 +61,7 @@ class LogMaker {
 
   Write write_;
   int data_port_;
+  int position_port_;
   bool has_navigation_;
   lidar::Bundler bundler_;
   navigator::ItemSequencer sequencer_;

@@ -24,7 +24,13 @@ bool IsNear(std::int64_t one_ns, std::int64_t other_ns) {
 // Of a scan, which does not name its sensor.
 std::string ModelOf(const std::string& type) {
   if (type == kTypePcd) return "PCD";
+  if (type.starts_with("livox")) return "Livox";
   return type == kTypeKittiPoints ? "KITTI" : "PointCloud2";
+}
+
+std::optional<RosPointCloud> CloudOf(const RecordedMessage& message) {
+  const bool is_livox = std::ranges::find(kTypesLivox, message.topic->type) != kTypesLivox.end();
+  return (is_livox ? ParseLivoxPoints : ParsePointCloud)(message.topic->encoding, message.bytes);
 }
 
 // rad/s and m/s2: what NAV_RAW takes.
@@ -50,7 +56,7 @@ void RosImport::Learn(Recording& recording) {
     if (!message) return;
     const auto use = map_.find(message->topic->name);
     if (use == map_.end() || use->second.use != Use::kLidarScan) continue;
-    if (const auto cloud = ParsePointCloud(message->topic->encoding, message->bytes)) {
+    if (const auto cloud = CloudOf(*message)) {
       num_clouds += clouds_.Learn(*cloud) ? 1 : 0;
     }
   }
@@ -65,7 +71,8 @@ void RosImport::Take(const RecordedMessage& message) {
   if (const auto recorded = UtimeOfNs(message.time_ns)) log_.AdvanceTo(*recorded);
   switch (use.use) {
     case Use::kLidarPackets:
-      TakePackets(message, use.time, tally);
+    case Use::kPositionPackets:
+      TakePackets(message, use, tally);
       break;
     case Use::kLidarScan:
       TakeCloud(message, use.time, tally);
@@ -104,23 +111,24 @@ std::optional<std::int64_t> RosImport::TimeNsOf(const RecordedMessage& message, 
   return std::nullopt;
 }
 
-void RosImport::TakePackets(const RecordedMessage& message, TimeBasis basis, TopicTally& tally) {
-  const auto scan = ParseVelodyneScan(message.topic->encoding, message.bytes);
-  if (!scan) {
+void RosImport::TakePackets(const RecordedMessage& message, const TopicUse& use, TopicTally& tally) {
+  const auto packets = ParsePackets(message.topic->encoding, message.topic->type, message.bytes);
+  if (!packets) {
     ++tally.num_refused;
     return;
   }
-  tally.num_used += scan->packets.empty() ? 0 : 1;
-  tally.num_empty += scan->packets.empty() ? 1 : 0;
-  for (const auto& packet : scan->packets) {
+  tally.num_used += packets->empty() ? 0 : 1;
+  tally.num_empty += packets->empty() ? 1 : 0;
+  for (const auto& packet : *packets) {
     auto stamp_ns = packet.stamp_ns;
     // A scan is recorded when its last packet is there: by that clock the others came as much earlier as their stamps say.
-    const auto before_last_ns = scan->packets.back().stamp_ns - packet.stamp_ns;
-    const bool is_off = basis == TimeBasis::kAuto && !IsNear(stamp_ns, message.time_ns);
-    if ((is_off || basis == TimeBasis::kRecorded) && before_last_ns >= 0 && before_last_ns <= kMaxStampOffNs / 10) {
+    const auto before_last_ns = packets->back().stamp_ns - packet.stamp_ns;
+    const bool has_stamp = stamp_ns != 0;
+    const bool is_off = has_stamp && use.time == TimeBasis::kAuto && !IsNear(stamp_ns, message.time_ns);
+    if ((is_off || use.time == TimeBasis::kRecorded) && before_last_ns >= 0 && before_last_ns <= kMaxStampOffNs / 10) {
       tally.num_other_time += is_off ? 1 : 0;
       stamp_ns = message.time_ns - before_last_ns;
-    } else if (basis == TimeBasis::kRecorded || is_off) {
+    } else if (use.time == TimeBasis::kRecorded || is_off || (!has_stamp && message.time_ns != 0)) {
       stamp_ns = message.time_ns;
     }
     const auto time = UtimeOfNs(stamp_ns);
@@ -129,13 +137,14 @@ void RosImport::TakePackets(const RecordedMessage& message, TimeBasis basis, Top
       continue;
     }
     ImportItem item;
+    if (use.use == Use::kPositionPackets) item.kind = ImportItem::Kind::kPositionPacket;
     item.bytes.assign(packet.payload.begin(), packet.payload.end());
     log_.Add(*time, std::move(item));
   }
 }
 
 void RosImport::TakeCloud(const RecordedMessage& message, TimeBasis basis, TopicTally& tally) {
-  const auto cloud = ParsePointCloud(message.topic->encoding, message.bytes);
+  const auto cloud = CloudOf(message);
   if (!cloud) {
     ++tally.num_refused;
     return;

@@ -41,7 +41,7 @@ class RosImport {
 
  private:
   static std::optional<std::int64_t> TimeNsOf(const RecordedMessage& message, std::int64_t stamp_ns, TimeBasis basis, TopicTally& tally);
-  void TakePackets(const RecordedMessage& message, TimeBasis basis, TopicTally& tally);
+  void TakePackets(const RecordedMessage& message, const TopicUse& use, TopicTally& tally);
   void TakeCloud(const RecordedMessage& message, TimeBasis basis, TopicTally& tally);
   void TakeImu(const RecordedMessage& message, const TopicUse& use, TopicTally& tally);
   void TakeSentence(const RecordedMessage& message, TimeBasis basis, TopicTally& tally);

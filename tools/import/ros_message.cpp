@@ -8,9 +8,10 @@ namespace lookout::importer {
 namespace {
 
 constexpr std::int64_t kRosNsPerS = 1'000'000'000;
-constexpr std::size_t kRosPacketBytes = 1206;
+constexpr std::size_t kVelodynePacketBytes = 1206;
+constexpr std::size_t kPandarPacketBytes = 1500;  // the room of each, whatever its size is
 constexpr std::uint32_t kMaxRosFields = 256;
-constexpr std::uint32_t kMaxRosPackets = 10'000;  // of a scan: 754 in a second
+constexpr std::uint32_t kMaxRosPackets = 20'000;  // of a scan: a Pandar64 has 12 000 in a second
 
 // Reads values one after the other. ROS 1: little-endian, packed. CDR (XCDR1): of either order, each number at a multiple of its size from behind the
 // 4 bytes of encapsulation on, texts with their zero. Behind the first that is not there everything is 0, and Finish says so.
@@ -31,6 +32,7 @@ class RosReader {
   std::uint8_t U8() { return static_cast<std::uint8_t>(Number<1>()); }
   std::uint16_t U16() { return static_cast<std::uint16_t>(Number<2>()); }
   std::uint32_t U32() { return static_cast<std::uint32_t>(Number<4>()); }
+  std::uint64_t U64() { return Number<8>(); }
   double F64() { return std::bit_cast<double>(Number<8>()); }
 
   template <std::size_t kCount>
@@ -109,16 +111,28 @@ bool DoSizesAgree(const RosPointCloud& cloud) {
 
 }  // namespace
 
-std::optional<RosVelodyneScan> ParseVelodyneScan(Encoding encoding, Bytes bytes) {
+std::optional<std::vector<RosPacket>> ParsePackets(Encoding encoding, std::string_view type, Bytes bytes) {
   RosReader reader(encoding, bytes);
-  RosVelodyneScan scan{reader.Header(), {}};
-  const auto num_packets = reader.U32();
+  std::vector<RosPacket> packets;
+  const bool is_one = std::ranges::find(kTypesOusterPacket, type) != kTypesOusterPacket.end();
+  if (!is_one) reader.Header();
+  const auto num_packets = is_one ? 1 : reader.U32();
   if (num_packets > kMaxRosPackets) reader.Fail();
   for (std::uint32_t i = 0; i < num_packets && reader.is_good(); ++i) {
-    const auto stamp_ns = reader.Stamp();
-    scan.packets.push_back({stamp_ns, reader.Take(kRosPacketBytes)});
+    auto& packet = packets.emplace_back();
+    if (!is_one) packet.stamp_ns = reader.Stamp();
+    if (type == kTypeVelodyneScan) {
+      packet.payload = reader.Take(kVelodynePacketBytes);
+    } else if (type == kTypePandarScan) {
+      const auto room = reader.Take(kPandarPacketBytes);
+      const auto size = reader.U32();
+      if (size > room.size()) reader.Fail();
+      if (reader.is_good()) packet.payload = room.first(size);
+    } else {
+      packet.payload = reader.Take(reader.U32());
+    }
   }
-  return reader.IsWhole() ? std::optional(std::move(scan)) : std::nullopt;
+  return reader.IsWhole() ? std::optional(std::move(packets)) : std::nullopt;
 }
 
 std::optional<RosPointCloud> ParsePointCloud(Encoding encoding, Bytes bytes) {
@@ -142,6 +156,35 @@ std::optional<RosPointCloud> ParsePointCloud(Encoding encoding, Bytes bytes) {
   cloud.data = reader.Take(reader.U32());
   reader.U8();  // is_dense: places that are not finite are looked for all the same
   return reader.IsWhole() && DoSizesAgree(cloud) ? std::optional(std::move(cloud)) : std::nullopt;
+}
+
+std::optional<RosPointCloud> ParseLivoxPoints(Encoding encoding, Bytes bytes) {
+  using Field = RosPointField;
+  RosReader reader(encoding, bytes);
+  RosPointCloud cloud;
+  cloud.header = reader.Header();
+  reader.U64();    // timebase: the stamp is the same, or by the host's clock
+  reader.U32();    // number of points, once more
+  reader.Take(4);  // number of the lidar, reserved
+  const auto num_points = reader.U32();
+  if (num_points > kMaxRosPoints) reader.Fail();
+  cloud.fields = {{"offset_time", 0, Field::kUint32, 1}, {"x", 4, Field::kFloat32, 1},           {"y", 8, Field::kFloat32, 1},
+                  {"z", 12, Field::kFloat32, 1},         {"reflectivity", 16, Field::kUint8, 1}, {"line", 17, Field::kUint8, 1}};
+  cloud.height = 1;
+  cloud.width = num_points;
+  cloud.point_step = 18;
+  cloud.row_step = num_points * cloud.point_step;
+  for (std::uint32_t i = 0; i < num_points && reader.is_good(); ++i) {
+    for (int k = 0; k < 4; ++k) {
+      const auto number = reader.U32();
+      for (unsigned shift = 0; shift < 32; shift += 8) cloud.made.push_back(static_cast<std::uint8_t>(number >> shift));
+    }
+    cloud.made.push_back(reader.U8());
+    reader.U8();  // tag
+    cloud.made.push_back(reader.U8());
+  }
+  cloud.data = cloud.made;
+  return reader.IsWhole() ? std::optional(std::move(cloud)) : std::nullopt;
 }
 
 std::optional<RosImu> ParseImu(Encoding encoding, Bytes bytes) {

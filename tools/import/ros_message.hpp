@@ -20,14 +20,8 @@ struct RosHeader {
 };
 
 struct RosPacket {
-  std::int64_t stamp_ns = 0;
-  Bytes payload;  // 1206 bytes
-};
-
-/// velodyne_msgs/VelodyneScan.
-struct RosVelodyneScan {
-  RosHeader header;
-  std::vector<RosPacket> packets;
+  std::int64_t stamp_ns = 0;  // 0: none
+  Bytes payload;
 };
 
 /// sensor_msgs/Imu, without orientation and covariances.
@@ -80,14 +74,22 @@ struct RosPointCloud {
   std::uint32_t point_step = 0;
   std::uint32_t row_step = 0;
   Bytes data;
+  std::vector<std::uint8_t> made = {};  // what `data` views where the message does not hold it so
 };
 
 /// A cloud has at most as many points as a scan of LIDAR_SCAN has cells.
 inline constexpr std::uint64_t kMaxRosPoints = std::uint64_t{1} << 21;
 
 /// The words that Parse... know; of what is of another type they must not be asked.
+/// Packets of a lidar as they came.
 inline constexpr std::string_view kTypeVelodyneScan = "velodyne_msgs/VelodyneScan";
+inline constexpr std::string_view kTypePandarScan = "pandar_msgs/PandarScan";
+inline constexpr std::string_view kTypeNebulaPackets = "nebula_msgs/NebulaPackets";
+/// One packet, without a stamp; of the lidar or of its IMU.
+inline constexpr std::array<std::string_view, 3> kTypesOusterPacket{"ouster_sensor_msgs/PacketMsg", "ouster_ros/PacketMsg", "ouster_msgs/PacketMsg"};
 inline constexpr std::string_view kTypePointCloud = "sensor_msgs/PointCloud2";
+/// Points of a Livox with their lines and times.
+inline constexpr std::array<std::string_view, 2> kTypesLivox{"livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg"};
 /// Of files, as sensor_msgs/PointCloud2 (point_message.hpp).
 inline constexpr std::string_view kTypePcd = "pcl/PCD";
 inline constexpr std::string_view kTypeKittiPoints = "kitti/Points";
@@ -101,8 +103,11 @@ inline constexpr std::string_view kTypeTwistWithCovariance = "geometry_msgs/Twis
 inline constexpr std::string_view kTypeOdometry = "nav_msgs/Odometry";
 
 /// @return nullopt when the bytes are too few, too many, of a CDR that is not known, or contradict themselves. Views are into `bytes`.
-std::optional<RosVelodyneScan> ParseVelodyneScan(Encoding encoding, Bytes bytes);
+/// @param type  one of those of packets
+std::optional<std::vector<RosPacket>> ParsePackets(Encoding encoding, std::string_view type, Bytes bytes);
 std::optional<RosPointCloud> ParsePointCloud(Encoding encoding, Bytes bytes);
+/// As a cloud that holds its points; it may be moved, and not copied.
+std::optional<RosPointCloud> ParseLivoxPoints(Encoding encoding, Bytes bytes);
 std::optional<RosImu> ParseImu(Encoding encoding, Bytes bytes);
 std::optional<RosNavSatFix> ParseNavSatFix(Encoding encoding, Bytes bytes);
 std::optional<RosTwist> ParseTwist(Encoding encoding, Bytes bytes, bool has_covariance);

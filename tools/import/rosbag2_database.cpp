@@ -115,7 +115,9 @@ void Rosbag2Database::ReadTopics() {
   while (statement && sqlite3_step(statement.get()) == SQLITE_ROW && topics_.size() < kMaxTopics) {
     const auto number = sqlite3_column_int64(statement.get(), 0);
     if (number < 0 || number > std::numeric_limits<std::uint32_t>::max()) continue;
-    const auto encoding = ColumnText(statement.get(), 3) == "cdr" ? Encoding::kCdr : Encoding::kOther;
+    // Some writers leave it empty.
+    const auto format = ColumnText(statement.get(), 3);
+    const auto encoding = format.empty() || format == "cdr" ? Encoding::kCdr : Encoding::kOther;
     const auto name = ColumnText(statement.get(), 1);
     if (name.empty()) continue;
     topics_.try_emplace(static_cast<std::uint32_t>(number), Topic{name, PlainTypeName(ColumnText(statement.get(), 2)), encoding});

@@ -20,18 +20,22 @@ namespace {
 struct UseRow {
   Use use;
   std::string_view word;
-  std::array<std::string_view, 3> types;  // of messages
+  std::array<std::string_view, 6> types;  // of messages
 };
 
-constexpr std::array kUseRows{UseRow{Use::kNone, "none", {}},
-                              UseRow{Use::kLidarPackets, "lidar_packets", {kTypeVelodyneScan}},
-                              UseRow{Use::kLidarScan, "lidar_scan", {kTypePointCloud, kTypePcd, kTypeKittiPoints}},
-                              UseRow{Use::kImu, "imu", {kTypeImu}},
-                              UseRow{Use::kImuFlu, "imu_flu", {kTypeImu}},
-                              UseRow{Use::kSentences, "sentences", {kTypeSentence, kTypeString}},
-                              UseRow{Use::kFix, "fix", {kTypeNavSatFix}},
-                              UseRow{Use::kVelocity, "velocity", {kTypeTwist, kTypeTwistWithCovariance}},
-                              UseRow{Use::kOxts, "oxts", {kTypeOxts}}};
+constexpr std::array kUseRows{
+    UseRow{Use::kNone, "none", {}},
+    UseRow{Use::kLidarPackets,
+           "lidar_packets",
+           {kTypeVelodyneScan, kTypePandarScan, kTypeNebulaPackets, kTypesOusterPacket[0], kTypesOusterPacket[1], kTypesOusterPacket[2]}},
+    UseRow{Use::kPositionPackets, "position_packets", {kTypesOusterPacket[0], kTypesOusterPacket[1], kTypesOusterPacket[2]}},
+    UseRow{Use::kLidarScan, "lidar_scan", {kTypePointCloud, kTypesLivox[0], kTypesLivox[1], kTypePcd, kTypeKittiPoints}},
+    UseRow{Use::kImu, "imu", {kTypeImu}},
+    UseRow{Use::kImuFlu, "imu_flu", {kTypeImu}},
+    UseRow{Use::kSentences, "sentences", {kTypeSentence, kTypeString}},
+    UseRow{Use::kFix, "fix", {kTypeNavSatFix}},
+    UseRow{Use::kVelocity, "velocity", {kTypeTwist, kTypeTwistWithCovariance}},
+    UseRow{Use::kOxts, "oxts", {kTypeOxts}}};
 
 const UseRow& RowOf(Use use) { return *std::ranges::find(kUseRows, use, &UseRow::use); }
 
@@ -90,12 +94,14 @@ TopicMap GuessTopics(const Topics& topics) {
     if (topic != nullptr) map[topic->name].use = use;
     return topic != nullptr;
   };
-  if (!take(Best(by_name, Use::kLidarPackets, -9, {}), Use::kLidarPackets)) {
+  if (take(Best(by_name, Use::kLidarPackets, -5, {{"lidar", 2}, {"imu", -9}}), Use::kLidarPackets)) {
+    take(Best(by_name, Use::kPositionPackets, 1, {{"imu", 2}, {"lidar_p", -9}}), Use::kPositionPackets);
+  } else {
     take(Best(by_name, Use::kLidarScan, 0,
-              {{"raw", 2},      {"points", 2},   {"lidar", 2},  {"velodyne", 2}, {"ouster", 2},  {"hesai", 2},   {"rslidar", 2},
-               {"pandar", 2},   {"os1", 1},      {"os_", 1},    {"cloud", 1},    {"filter", -3}, {"ground", -3}, {"obstacle", -5},
-               {"cluster", -5}, {"segment", -5}, {"map", -5},   {"regist", -5},  {"depth", -6},  {"camera", -6}, {"stereo", -6},
-               {"zed", -6},     {"radar", -6},   {"sonar", -6}, {"2/", -1}}),
+              {{"raw", 2},       {"points", 2},   {"lidar", 2},    {"velodyne", 2}, {"ouster", 2},  {"hesai", 2},   {"rslidar", 2},
+               {"pandar", 2},    {"livox", 2},    {"os1", 1},      {"os_", 1},      {"cloud", 1},   {"filter", -3}, {"ground", -3},
+               {"obstacle", -5}, {"cluster", -5}, {"segment", -5}, {"map", -5},     {"regist", -5}, {"depth", -6},  {"camera", -6},
+               {"stereo", -6},   {"zed", -6},     {"radar", -6},   {"sonar", -6},   {"2/", -1}}),
          Use::kLidarScan);
   }
   take(Best(by_name, Use::kImuFlu, -5,

@@ -11,7 +11,7 @@
 
 namespace lookout::importer {
 
-enum class Use { kNone, kLidarPackets, kLidarScan, kImu, kImuFlu, kSentences, kFix, kVelocity, kOxts };
+enum class Use { kNone, kLidarPackets, kPositionPackets, kLidarScan, kImu, kImuFlu, kSentences, kFix, kVelocity, kOxts };
 
 /// Whose time a message has: the stamp in it where that is within kMaxStampOffNs of the recording's, else the recording's; or always one of them.
 enum class TimeBasis { kAuto, kStamp, kRecorded };
@@ -28,7 +28,7 @@ struct TopicUse {
 using TopicMap = std::map<std::string, TopicUse, std::less<>>;
 
 /// A topic that lookout-import can use, and one for each purpose:
-///   lidar: VelodyneScan before PointCloud2; of several the one whose name is most like a lidar's raw points
+///   lidar: packets before PointCloud2; of several the one whose name is most like a lidar's raw points
 ///   IMU: of several the one that is not inside of a lidar or camera
 ///   receiver: all topics of sentences; without any a NavSatFix, and the velocity beside it
 TopicMap GuessTopics(const Topics& topics);

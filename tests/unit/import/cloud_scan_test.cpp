@@ -78,6 +78,41 @@ Payload MakeTurnCloud(Layout layout) {
   return MakeCloud(Encoding::kRos1, 1, num_points, 12, {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}}, data.bytes);
 }
 
+// The same points as a Livox's driver sends them.
+Payload MakeLivoxTurn(Encoding encoding) {
+  constexpr auto kNumPoints = static_cast<std::uint32_t>(MadeTurn::kNumRings * MadeTurn::kNumColumns);
+  RosWriter writer(encoding);
+  writer.Header().Number(static_cast<std::uint64_t>(kMadeStampNs)).Number(kNumPoints).Raw(Payload{1, 0, 0, 0}).Number(kNumPoints);
+  for (int column = 0; column < MadeTurn::kNumColumns; ++column) {
+    for (int ring = 0; ring < MadeTurn::kNumRings; ++ring) {
+      writer.Number(static_cast<std::uint32_t>(column * 1'000'000 + ring * 10'000));
+      const double azimuth_rad = kTwoPi * (column + 0.01 * ring) / MadeTurn::kNumColumns;
+      for (const double place_m : MadeTurn::PlaceM(ring, column, azimuth_rad)) writer.Number(static_cast<float>(place_m));
+      writer.Number(std::uint8_t{42}).Number(std::uint8_t{0x10}).Number(static_cast<std::uint8_t>(ring));
+    }
+  }
+  return writer.Bytes();
+}
+
+TEST(CloudScans, OfALivoxAreThoseOfACloud) {
+  CloudScans clouds;
+  const auto bytes = MakeTurnCloud(Layout::kVelodyne);
+  const auto wanted = clouds.Convert(*ParsePointCloud(Encoding::kRos1, bytes), kMadeStampNs, "model");
+  for (const auto encoding : {Encoding::kRos1, Encoding::kCdr}) {
+    auto livox = MakeLivoxTurn(encoding);
+    const auto cloud = ParseLivoxPoints(encoding, livox);
+    ASSERT_TRUE(cloud);
+    CloudScans scans;
+    const auto parts = scans.Convert(*cloud, kMadeStampNs, "model");
+    ASSERT_EQ(parts.size(), wanted.size());
+    EXPECT_EQ(parts[0].range, wanted[0].range);
+    EXPECT_EQ(parts[0].reflectivity, wanted[0].reflectivity);
+    EXPECT_EQ(parts[0].elevation_rad, wanted[0].elevation_rad);
+    livox.resize(livox.size() - 9);
+    EXPECT_FALSE(ParseLivoxPoints(encoding, livox));
+  }
+}
+
 TEST(CloudScans, OfEachDriverGiveTheSameScan) {
   for (const auto layout : {Layout::kVelodyne, Layout::kHesai, Layout::kOrganised}) {
     SCOPED_TRACE(static_cast<int>(layout));

@@ -230,7 +230,7 @@ inline Payload MakeMcap(const std::vector<Made>& messages, Packing packing, std:
 
 // --- rosbag2 ---
 
-inline Payload MakeDatabase(const std::vector<Made>& messages) {
+inline Payload MakeDatabase(const std::vector<Made>& messages, const std::string& format = "cdr") {
   sqlite3* database = nullptr;
   sqlite3_open(":memory:", &database);
   const auto run = [database](const char* text) {
@@ -243,7 +243,7 @@ inline Payload MakeDatabase(const std::vector<Made>& messages) {
   for (std::size_t i = 0; i < topics.size(); ++i) {
     auto type = topics[i].second;
     type.insert(type.find('/'), "/msg");
-    run(("INSERT INTO topics VALUES (" + std::to_string(i) + ", '" + topics[i].first + "', '" + type + "', 'cdr', '')").c_str());
+    run(("INSERT INTO topics VALUES (" + std::to_string(i) + ", '" + topics[i].first + "', '" + type + "', '" + format + "', '')").c_str());
   }
   for (const auto& message : messages) {
     sqlite3_stmt* insert = nullptr;
@@ -336,6 +336,24 @@ inline Payload MakeVelodyneScan(Encoding encoding, int num_packets, std::int64_t
   writer.Header(stamp_ns).Number(static_cast<std::uint32_t>(num_packets));
   for (int i = 0; i < num_packets; ++i) writer.Stamp(stamp_ns + i * 1'327'000LL).Raw(Payload(1206, static_cast<std::uint8_t>(i)));
   return writer.Bytes();
+}
+// Of Hesai: each in the same room, or of its own size. Packet i has 1000 + i bytes of i.
+inline Payload MakeHesaiPackets(Encoding encoding, int num_packets, bool has_room, std::int64_t stamp_ns = kMadeStampNs) {
+  RosWriter writer(encoding);
+  writer.Header(stamp_ns).Number(static_cast<std::uint32_t>(num_packets));
+  for (int i = 0; i < num_packets; ++i) {
+    Payload packet(1000 + static_cast<std::size_t>(i), static_cast<std::uint8_t>(i));
+    const auto size = static_cast<std::uint32_t>(packet.size());
+    writer.Stamp(stamp_ns + i * 1'000'000LL);
+    if (!has_room) writer.Number(size);
+    if (has_room) packet.resize(1500);
+    writer.Raw(packet);
+    if (has_room) writer.Number(size);
+  }
+  return writer.Bytes();
+}
+inline Payload MakeOusterPacket(Encoding encoding, std::uint8_t letter) {
+  return RosWriter(encoding).Number(std::uint32_t{300}).Raw(Payload(300, letter)).Bytes();
 }
 
 struct MadeField {

@@ -110,6 +110,13 @@ TEST(Rosbag2Database, GivesItsMessagesInTheOrderOfTheirNumbers) {
   EXPECT_FALSE(read.losses.IsAny());
 }
 
+// As a recording of a VLS-128 that others published.
+TEST(Rosbag2Database, TakesTopicsOfNoFormatForCdr) {
+  const auto made = SomeMessages(Encoding::kCdr);
+  Rosbag2Database database(MakeDatabase(made, ""));
+  ExpectEqual(ReadAll(database).messages, made);
+}
+
 TEST(Rosbag2Database, UnpacksMessagesThatWerePackedOneByOne) {
   auto made = SomeMessages(Encoding::kCdr);
   auto packed = made;

@@ -40,15 +40,40 @@ TEST(RosMessage, IsTheSameOutOfBothEncodings) {
     EXPECT_EQ(fix->status, -1);
     EXPECT_EQ(fix->longitude_deg, 170.1);
     EXPECT_EQ(fix->variance_m2, (std::array{0.04, 0.09, 0.25}));
-    const auto scan = ParseVelodyneScan(encoding, MakeVelodyneScan(encoding, 3));
-    ASSERT_TRUE(scan);
-    ASSERT_EQ(scan->packets.size(), 3U);
-    EXPECT_EQ(scan->packets[2].stamp_ns, kMadeStampNs + 2 * 1'327'000);
-    EXPECT_EQ(scan->packets[2].payload[1205], 2);
+    const auto scan = MakeVelodyneScan(encoding, 3);
+    const auto packets = ParsePackets(encoding, kTypeVelodyneScan, scan);
+    ASSERT_TRUE(packets);
+    ASSERT_EQ(packets->size(), 3U);
+    EXPECT_EQ(packets->at(2).stamp_ns, kMadeStampNs + 2 * 1'327'000);
+    EXPECT_EQ(packets->at(2).payload[1205], 2);
     const auto sentence = ParseSentenceMessage(encoding, MakeSentence(encoding, "$A"), true);
     ASSERT_TRUE(sentence);
     EXPECT_EQ(sentence->text, "$A");
   }
+}
+
+TEST(RosMessage, HoldsPacketsOfHesaiAndOuster) {
+  for (const auto encoding : {Encoding::kRos1, Encoding::kCdr}) {
+    for (const bool has_room : {true, false}) {
+      const auto scan = MakeHesaiPackets(encoding, 4, has_room);
+      const auto packets = ParsePackets(encoding, has_room ? kTypePandarScan : kTypeNebulaPackets, scan);
+      ASSERT_TRUE(packets);
+      ASSERT_EQ(packets->size(), 4U);
+      EXPECT_EQ(packets->at(3).stamp_ns, kMadeStampNs + 3'000'000);
+      EXPECT_EQ(packets->at(3).payload.size(), 1003U);
+      EXPECT_EQ(packets->at(3).payload[1002], 3);
+    }
+    for (const auto type : kTypesOusterPacket) {
+      const auto bytes = MakeOusterPacket(encoding, 7);
+      const auto packet = ParsePackets(encoding, type, bytes);
+      ASSERT_TRUE(packet && packet->size() == 1);
+      EXPECT_EQ(packet->at(0).stamp_ns, 0);
+      EXPECT_EQ(packet->at(0).payload.size(), 300U);
+    }
+  }
+  auto longer = MakeHesaiPackets(Encoding::kRos1, 1, true);
+  longer[longer.size() - 2] = 0xFF;  // its size is more than its room
+  EXPECT_FALSE(ParsePackets(Encoding::kRos1, kTypePandarScan, longer));
 }
 
 TEST(RosMessage, CutAnywhereOrLongerIsNone) {
@@ -66,7 +91,10 @@ TEST(RosMessage, CutAnywhereOrLongerIsNone) {
 
 TEST(RosMessage, OfCountsThatItCannotHoldIsNone) {
   for (const std::uint32_t count : {0xFFFFFFFFU, 0x10000U}) {
-    EXPECT_FALSE(ParseVelodyneScan(Encoding::kRos1, RosWriter(Encoding::kRos1).Header().Number(count).Bytes()));
+    for (const auto type : {kTypeVelodyneScan, kTypePandarScan, kTypeNebulaPackets}) {
+      EXPECT_FALSE(ParsePackets(Encoding::kRos1, type, RosWriter(Encoding::kRos1).Header().Number(count).Bytes()));
+    }
+    EXPECT_FALSE(ParsePackets(Encoding::kRos1, kTypesOusterPacket[0], RosWriter(Encoding::kRos1).Number(count).Bytes()));
     EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, RosWriter(Encoding::kRos1).Header().Number(count).Number(count).Number(count).Bytes()));
     EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, count, count, 16, {}, Payload(64))));
     EXPECT_FALSE(ParsePointCloud(Encoding::kRos1, MakeCloud(Encoding::kRos1, 1, 4, count, {}, Payload(64))));
@@ -115,6 +143,11 @@ Topics MakeTopics(const std::vector<std::pair<std::string, std::string>>& topics
 TEST(TopicMap, IsGuessedByTypeAndName) {
   const auto packets = MakeTopics({{"/velodyne_points", "sensor_msgs/PointCloud2"}, {"/velodyne_packets", "velodyne_msgs/VelodyneScan"}});
   EXPECT_EQ(GuessTopics(packets), (TopicMap{{"/velodyne_packets", {Use::kLidarPackets}}}));
+  EXPECT_EQ(GuessTopics(MakeTopics({{"/pandar_packets", "pandar_msgs/PandarScan"}})), (TopicMap{{"/pandar_packets", {Use::kLidarPackets}}}));
+  const auto ouster = MakeTopics({{"/ouster/imu_packets", "ouster_sensor_msgs/PacketMsg"},
+                                  {"/ouster/lidar_packets", "ouster_sensor_msgs/PacketMsg"},
+                                  {"/ouster/points", "sensor_msgs/PointCloud2"}});
+  EXPECT_EQ(GuessTopics(ouster), (TopicMap{{"/ouster/imu_packets", {Use::kPositionPackets}}, {"/ouster/lidar_packets", {Use::kLidarPackets}}}));
   const auto boat = MakeTopics({{"/os1_node/imu", "sensor_msgs/Imu"},
                                 {"/imu/data", "sensor_msgs/Imu"},
                                 {"/obstacles/points", "sensor_msgs/PointCloud2"},
