@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/core/angles.hpp"
+#include "services/lidar/core/models/ouster.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::lidar::ouster_metadata_test {
@@ -131,6 +132,29 @@ TEST(OusterMetadata, OfARecordingIsRead) {
   EXPECT_EQ(nested.profile, OusterProfile::kDual);
   EXPECT_DOUBLE_EQ(nested.beam_origin_m, 0.016721);
   EXPECT_DOUBLE_EQ(nested.T_sensor_lidar->translation().z(), 0.038195);
+}
+
+// Every second or fourth channel has a beam.
+TEST(OusterMetadata, OfFirmware1_13HasChannelsWithoutABeam) {
+  const auto sixteen = [](int every) {
+    std::string elevations;
+    std::string offsets;
+    for (int i = 0; i < 64; ++i) {
+      const bool has_beam = i % every == every - 1;
+      elevations += (i == 0 ? "" : ",") + std::to_string(has_beam ? 15.0 - 0.5 * i : 0.0);
+      offsets += (i == 0 ? "" : ",") + std::to_string(has_beam ? -3.1 : 0.0);
+    }
+    return R"({"prod_line":"OS-1-16-A0","lidar_mode":"1024x10","beam_altitude_angles":[)" + elevations + R"(],"beam_azimuth_angles":[)" + offsets +
+           "]}";
+  };
+  for (const int every : {2, 4}) {
+    const auto metadata = ParseOusterMetadata(sixteen(every));
+    EXPECT_EQ(metadata.pixels_per_column, 64);
+    const auto beams = OusterReader(metadata).head().beams;
+    ASSERT_EQ(beams.size(), static_cast<std::size_t>(64 / every));
+    for (const auto& beam : beams) EXPECT_EQ(beam.channel % every, every - 1);
+  }
+  EXPECT_NE(FaultOf(sixteen(8)).find("two channels have one direction"), std::string::npos);
 }
 
 TEST(OusterMetadata, ThatIsMalformedIsRefused) {

@@ -208,6 +208,7 @@ OusterReader::OusterReader(const OusterMetadata& metadata)
       column_head_bytes_(metadata.profile == OusterProfile::kLegacy ? kOusterLegacyColumnHeadBytes : kOusterColumnHeadBytes) {
   std::vector<std::size_t> channels(static_cast<std::size_t>(metadata.pixels_per_column));
   std::iota(channels.begin(), channels.end(), std::size_t{0});
+  std::erase_if(channels, [&](std::size_t channel) { return std::isnan(metadata.elevation_rad[channel]); });
   std::ranges::stable_sort(channels, {}, [&](std::size_t channel) { return metadata.elevation_rad[channel]; });
   head_.model = metadata.ModelName();
   head_.range_unit_m = OusterRangeUnitM(metadata.profile);

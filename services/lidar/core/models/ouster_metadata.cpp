@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 #include "common/core/printable.hpp"
 
 namespace lookout::lidar {
@@ -34,6 +35,7 @@ constexpr double kMaxTransformMm = 10'000.0;
 constexpr double kMaxRotationError = 1e-3;
 
 // First generation; its metadata do not say it.
+constexpr std::size_t kFirstGenerationChannels = 64;
 constexpr double kFirstGenerationOriginMm = 12.163;
 constexpr int kFirstColumnsPerPacket = 16;
 
@@ -278,9 +280,18 @@ void ReadBeams(const Json& root, OusterMetadata& metadata) {
     offsets.Refuse(std::to_string(metadata.azimuth_offset_rad.size()) + " angles, but " + elevations.name + " has " +
                    std::to_string(metadata.elevation_rad.size()));
   }
-  // Tables that were never filled are zeros.
+  // Where fewer beams than channels are there, the table has zeros for the others, and so have tables that were never filled.
+  const auto is_zero = [&metadata](std::size_t i) { return metadata.elevation_rad[i] == 0.0 && metadata.azimuth_offset_rad[i] == 0.0; };
+  std::size_t num_zeros = 0;
+  for (std::size_t i = 0; i < metadata.elevation_rad.size(); ++i) num_zeros += is_zero(i) ? 1 : 0;
+  const bool has_unused = metadata.elevation_rad.size() == kFirstGenerationChannels &&
+                          (num_zeros == kFirstGenerationChannels / 2 || num_zeros == kFirstGenerationChannels * 3 / 4);
   std::set<std::pair<double, double>> directions;
   for (std::size_t i = 0; i < metadata.elevation_rad.size(); ++i) {
+    if (has_unused && is_zero(i)) {
+      metadata.elevation_rad[i] = kNan;
+      continue;
+    }
     if (!directions.emplace(metadata.elevation_rad[i], metadata.azimuth_offset_rad[i]).second) {
       elevations.Refuse("two channels have one direction (" + std::to_string(i) + " and one before it): the table is not filled");
     }

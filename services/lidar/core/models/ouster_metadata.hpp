@@ -49,7 +49,8 @@ struct OusterMetadata {
   OusterClock clock = OusterClock::kUnknown;
   OusterReturnOrder return_order = OusterReturnOrder::kStrongestToWeakest;
 
-  std::vector<double> elevation_rad;       // [pixels_per_column] by channel
+  // [pixels_per_column] by channel. NaN: it has no beam; an OS1 with 16 or 32 beams sends 64 channels by firmware 1.13 and before.
+  std::vector<double> elevation_rad;
   std::vector<double> azimuth_offset_rad;  // [pixels_per_column] clockwise
   double beam_origin_m = 0.0;              // n: from the lidar's origin to where beams begin; ranges are from the origin
   double beam_origin_height_m = 0.0;       // how far these places lie above the origin
