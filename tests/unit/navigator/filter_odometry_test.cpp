@@ -60,7 +60,9 @@ struct OdometryRun {
   double gap_end_s = 70.0;
   double end_s = 75.0;
   bool has_odometry = true;
+  bool has_compass = true;
   bool has_compass_in_gap = false;
+  std::function<double(double)> course_error_rad = [](double) { return 0.0; };
   std::function<void(double, OdometryMotion&)> spoil = [](double, OdometryMotion&) {};
 
   struct Result {
@@ -83,8 +85,12 @@ struct OdometryRun {
     const auto is_gap = [this](double t) { return t > gap_begin_s && t < gap_end_s; };
     for (int i = 0; i * kScanS <= end_s; ++i) {
       const double t = i * kScanS;
-      if (!is_gap(t) || has_compass_in_gap) filter.Add(HeadingSample(t, RadToDeg(boat.HeadingRad(t))));
-      if (i % 2 == 0 && !is_gap(t)) filter.Add(boat.FixAt(t, fix_sd_m));
+      if (has_compass && (!is_gap(t) || has_compass_in_gap)) filter.Add(HeadingSample(t, RadToDeg(boat.HeadingRad(t))));
+      if (i % 2 == 0 && !is_gap(t)) {
+        auto fix = boat.FixAt(t, fix_sd_m);
+        fix.course_rad += course_error_rad(t);
+        filter.Add(fix);
+      }
       if (has_odometry && i > 0) {
         auto motion = boat.Motion(t);
         spoil(t, motion);
@@ -130,6 +136,27 @@ TEST(LidarAid, CarriesOnAlongAStraightWayFartherThanTheLevelFrame) {
   EXPECT_EQ(result.At(69.9).status, PoseStatus::kCoasting);
   EXPECT_LT(result.ErrorM(69.9).norm(), 0.5);
   EXPECT_LT(std::abs(RadToDeg(result.HeadingErrorRad(69.9))), 0.3);
+}
+
+// A receiver alone, whose course swings by 12 deg with the waves.
+TEST(LidarAid, KeepsAHeadingThatTheCourseStandsInFor) {
+  OdometryRun run;
+  run.has_compass = false;
+  run.fix_sd_m = 1.5;
+  run.boat.turn_radps = DegToRad(6.0);
+  run.course_error_rad = [](double t) { return DegToRad(12.0) * std::sin(kTwoPi * t / 4.0); };
+  run.gap_begin_s = run.gap_end_s = run.end_s = 60.0;
+  const auto rms_deg = [](const OdometryRun::Result& result) {
+    double squares = 0.0;
+    int num = 0;
+    for (double t = 20.0; t < 60.0; t += kScanS, ++num) squares += std::pow(RadToDeg(result.HeadingErrorRad(t)), 2);
+    return std::sqrt(squares / num);
+  };
+  const auto with_deg = rms_deg(run.Sail());
+  run.has_odometry = false;
+  const auto without_deg = rms_deg(run.Sail());
+  EXPECT_LT(with_deg, 3.0);
+  EXPECT_GT(without_deg, 2.0 * with_deg);
 }
 
 TEST(LidarAid, AFixThatComesBackIsAcceptedWithoutAJump) {
