@@ -69,7 +69,7 @@ bool GoesOn(const UseTimes& input, Utime time) {
 bool ApplyNeeded(const Innovation<3>& motion, bool may_use_way, State& state) {
   const auto& aiding = state.aiding;
   const bool uses_way = may_use_way && (!GoesOn(aiding.fix, state.time) || aiding.fix_error_model.kind == ErrorKind::kRtk);
-  // Where the course stands in for a heading, leeway and each turn make it wrong by far more than the lidar is.
+  // Where the course stands in for a heading, leeway and turning make it wrong by far more than the lidar is.
   const bool is_poor = aiding.heading_source == HeadingSource::kCourse;
   const bool uses_turn = is_poor || !GoesOn(aiding.heading(), state.time) || aiding.heading_error_model.kind == ErrorKind::kTwoAntennas;
   // All of it must agree, also what is not used.
