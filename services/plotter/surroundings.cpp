@@ -61,6 +61,20 @@ void NearestRanges(const lidar_scan_t& scan, std::size_t column, std::vector<flo
   }
 }
 
+// In the map frame, as it has gone on since. nullopt: a number that cannot be.
+std::optional<std::vector<Eigen::Vector2d>> OutlineAfter(const track_t& track, double duration_s) {
+  const Eigen::Vector2d velocity_mps(track.velocity_map_mps[0], track.velocity_map_mps[1]);
+  std::vector<Eigen::Vector2d> outline_m;
+  outline_m.reserve(track.outline_east_m.size());
+  for (std::size_t i = 0; i < track.outline_east_m.size(); ++i) outline_m.emplace_back(track.outline_east_m[i], track.outline_north_m[i]);
+  if (outline_m.empty()) outline_m.emplace_back(track.position_map_m[0], track.position_map_m[1]);
+  for (auto& corner_m : outline_m) corner_m += duration_s * velocity_mps;
+  const bool is_good =
+      velocity_mps.allFinite() && velocity_mps.norm() < kMostMps &&
+      std::ranges::all_of(outline_m, [](const Eigen::Vector2d& corner_m) { return corner_m.allFinite() && corner_m.norm() < kMostM; });
+  return is_good ? std::optional(std::move(outline_m)) : std::nullopt;
+}
+
 }  // namespace
 
 template <typename Message>
@@ -209,26 +223,19 @@ void Surroundings::AddTracks(std::span<const tracks_t> tracks, const Pose& now, 
   if (!Datum{head.datum_latitude_deg, head.datum_longitude_deg, head.datum_ellipsoid_height_m}.IsSameAs(now.datum)) return;
   const double ahead_s = ToSeconds(now.time - Utime(microseconds(head.end_utime_us)));
   const Eigen::Matrix<double, 2, 3> vessel_from_map = VesselFromHere(now.heading_rad) * now.R_map_here.transpose();
-  std::vector<Eigen::Vector2d> outline_m;
   for (const auto& part : tracks) {
     for (const auto& track : part.tracks) {
       if (!IsThere(track, params_.takes_tentative)) continue;
       if (track.kind == track_t::KIND_STRUCTURE && track.num_segments > 0) continue;
-      const Eigen::Vector2d velocity_mps(track.velocity_map_mps[0], track.velocity_map_mps[1]);
-      bool is_good = velocity_mps.allFinite() && velocity_mps.norm() < kMostMps;
-      outline_m.clear();
-      for (std::size_t i = 0; i < track.outline_east_m.size(); ++i) {
-        const Eigen::Vector2d corner_m(track.outline_east_m[i], track.outline_north_m[i]);
-        is_good = is_good && corner_m.allFinite() && corner_m.norm() < kMostM;
-        const Eigen::Vector2d then_m = corner_m + ahead_s * velocity_mps;
-        outline_m.emplace_back(vessel_from_map * (Eigen::Vector3d(then_m.x(), then_m.y(), now.position_map_m.z()) - now.position_map_m));
-      }
-      if (!is_good) {
+      auto outline_m = OutlineAfter(track, ahead_s);
+      if (!outline_m) {
         ++counts_["outlines_refused"];
         continue;
       }
-      if (Contains(outline_m, Eigen::Vector2d::Zero())) continue;
-      look.sectors.AddOutline(outline_m);
+      for (auto& corner_m : *outline_m) {
+        corner_m = vessel_from_map * (Eigen::Vector3d(corner_m.x(), corner_m.y(), now.position_map_m.z()) - now.position_map_m);
+      }
+      if (!Contains(*outline_m, Eigen::Vector2d::Zero())) look.sectors.AddOutline(*outline_m);
     }
   }
 }

@@ -23,7 +23,7 @@ using support::MavlinkFrame;
 using Polygon = std::vector<Vector2d>;  // map frame
 constexpr double kNothing = std::numeric_limits<double>::infinity();
 constexpr double kReachM = 40.0;
-constexpr std::int64_t kTurnUs = 100'000;
+constexpr std::int64_t kScanUs = 100'000;
 
 // Of a ray from a place to the nearest edge.
 double RangeTo(const std::vector<Polygon>& things, const Vector2d& from_m, const Vector2d& direction) {
@@ -128,10 +128,10 @@ class MavlinkService : public ::testing::Test {
     support::Send(*bus_, bus::kPose, pose);
   }
 
-  // A turn of 0.2 deg columns that ends now: each column sees from where the boat was then.
+  // A scan of 0.2 deg columns that ends now: each column sees from where the boat was then.
   void SendScan() {
-    const auto begin_us = host_us_ - kTurnUs;
-    auto scan = support::OfScan<lidar_scan_t>(begin_us, seq_, kTurnUs);
+    const auto begin_us = host_us_ - kScanUs;
+    auto scan = support::OfScan<lidar_scan_t>(begin_us, seq_, kScanUs);
     const auto& lidar = params_.surroundings->lidars.front();
     constexpr int kColumns = 1800;
     std::vector<float> azimuth_rad;
@@ -139,7 +139,7 @@ class MavlinkService : public ::testing::Test {
     for (int i = 0; i < kColumns; ++i) {
       if (!fires_(i * 360.0 / kColumns)) continue;
       azimuth_rad.push_back(static_cast<float>(i * kTwoPi / kColumns));
-      time_ns.push_back(static_cast<std::int32_t>(i * kTurnUs * 1000 / kColumns));
+      time_ns.push_back(static_cast<std::int32_t>(i * kScanUs * 1000 / kColumns));
     }
     support::FillColumns(scan, azimuth_rad, time_ns, 0);
     scan.elevation_rad = {-0.01F, 0.01F};
@@ -173,7 +173,7 @@ class MavlinkService : public ::testing::Test {
   }
 
   void SendTracks() {
-    auto message = support::OfScan<tracks_t>(host_us_ - kTurnUs, seq_, kTurnUs);
+    auto message = support::OfScan<tracks_t>(host_us_ - kScanUs, seq_, kScanUs);
     message.begin_utime_us = kStartUs;
     SetDatum(message);
     message.land_segment_ids = land_ids_;
@@ -183,7 +183,7 @@ class MavlinkService : public ::testing::Test {
   }
 
   void SendAlerts() {
-    auto message = support::OfScan<alerts_t>(host_us_ - kTurnUs, seq_, kTurnUs);
+    auto message = support::OfScan<alerts_t>(host_us_ - kScanUs, seq_, kScanUs);
     support::Fill(message, alerts_);
     support::Send(*bus_, bus::kAlerts, message);
   }
@@ -197,18 +197,18 @@ class MavlinkService : public ::testing::Test {
     }
   }
 
-  // A turn of the lidar, and all that is made of it.
-  void Turn() {
+  // A scan, and all that is made of it.
+  void NextScan() {
     BeginPose();
-    Wait(kTurnUs);
+    Wait(kScanUs);
     SendScan();
     SendTracks();
     SendAlerts();
     support::HandleAll(*bus_);
     ++seq_;
   }
-  void Run(int num_turns) {
-    for (int i = 0; i < num_turns; ++i) Turn();
+  void Run(int num_scans) {
+    for (int i = 0; i < num_scans; ++i) NextScan();
   }
 
   std::vector<MavlinkFrame> Frames() const {
@@ -222,10 +222,10 @@ class MavlinkService : public ::testing::Test {
     for (const auto& frame : Frames(support::kStatusTextId)) texts.push_back(frame.text());
     return texts;
   }
-  // Of the last turn; empty where nothing was sent.
+  // Of the next scan; empty where nothing was sent.
   std::optional<MavlinkFrame> Last() {
     link_->sent.clear();
-    Turn();
+    NextScan();
     const auto frames = Frames(support::kObstacleDistanceId);
     EXPECT_LE(frames.size(), 1U);
     return frames.empty() ? std::nullopt : std::optional(frames.back());
@@ -288,9 +288,9 @@ class MavlinkService : public ::testing::Test {
     alert.text = "boat 17: closest approach 3 m in 21 s";
     return alert;
   }
-  // Before the boat at the end of turn `num_turns`.
-  Vector2d Ahead(int num_turns, double ahead_m, double starboard_m) const {
-    const auto utime_us = host_us_ + num_turns * kTurnUs;
+  // Before the boat at the end of that scan.
+  Vector2d Ahead(int num_scans, double ahead_m, double starboard_m) const {
+    const auto utime_us = host_us_ + num_scans * kScanUs;
     const double heading_rad = HeadingAt(utime_us);
     return PlaceAt(utime_us) + ahead_m * Vector2d(std::sin(heading_rad), std::cos(heading_rad)) +
            starboard_m * Vector2d(std::cos(heading_rad), -std::sin(heading_rad));
@@ -360,7 +360,7 @@ TEST_F(MavlinkService, SendsCoastingTracksThatAreNotSeenWhereTheyHaveGone) {
   EXPECT_NEAR(frame->distance_cm(0), 900, 2);
   EXPECT_EQ(frame->distance_cm(20), 4001);
   // POSE is 60 ms farther than TRACKS: the track has gone on, and so has the boat.
-  Wait(kTurnUs);
+  Wait(kScanUs);
   SendScan();
   auto ahead_m = Box(Ahead(0, 10.0, 0.0), 2.0, 2.0, -heading_rad_);
   track = TrackOf(7, ahead_m, track_t::STATUS_COASTING);
@@ -440,7 +440,7 @@ TEST_F(MavlinkService, SaysUnknownWhereNobodyLooks) {
 // At the start, or where the map becomes another one: the boat's way within the scan is not known.
 TEST_F(MavlinkService, SaysNothingIsClearWhereAPoseWithinTheScanIsMissing) {
   host_us_ += 20'000;
-  Turn();
+  NextScan();
   for (const auto& frame : Frames(support::kObstacleDistanceId)) {
     for (std::size_t i = 0; i < kNumSectors; ++i) EXPECT_EQ(frame.distance_cm(i), MavSectors::kUnknown) << i;
   }
@@ -472,7 +472,7 @@ TEST_F(MavlinkService, IsSilentWhenTheLookOutIsLostAndSaysSoOnce) {
   link_->sent.clear();
   // TRACKS come no more, all else does.
   for (int i = 0; i < 30; ++i) {
-    Wait(kTurnUs);
+    Wait(kScanUs);
     SendScan();
     SendAlerts();
   }
@@ -489,14 +489,14 @@ TEST_F(MavlinkService, IsSilentWhenTheLookOutIsLostAndSaysSoOnce) {
 TEST_F(MavlinkService, IsSilentWithoutAlertsOrPose) {
   Run(10);
   for (int i = 0; i < 20; ++i) {
-    Wait(kTurnUs);
+    Wait(kScanUs);
     SendScan();
     SendTracks();
     ++seq_;
   }
   link_->sent.clear();
   for (int i = 0; i < 10; ++i) {
-    Wait(kTurnUs);
+    Wait(kScanUs);
     SendScan();
     SendTracks();
     ++seq_;
@@ -516,11 +516,11 @@ TEST_F(MavlinkService, IsSilentWithoutAlertsOrPose) {
 TEST_F(MavlinkService, IsSilentWhileAnAlertSaysThatNobodyLooks) {
   Run(10);
   alerts_ = {AlertOf(-1, alert_t::CAUSE_WATCH)};
-  Turn();
+  NextScan();
   EXPECT_FALSE(Last());
   // A part of the guard zone alone: its sectors are unknown by themselves.
   alerts_ = {AlertOf(4, alert_t::CAUSE_WATCH)};
-  Turn();
+  NextScan();
   EXPECT_TRUE(Last());
 }
 
@@ -547,14 +547,14 @@ TEST_F(MavlinkService, SendsAHeartbeatASecondFromTheStartOn) {
 TEST_F(MavlinkService, SendsPointsInPlaceOfSectors) {
   output_.mavlink.form = MavlinkForm::kPoints;
   Start();
-  Turn();
+  NextScan();
   auto points = Frames(support::kObstacleDistance3dId);
   ASSERT_EQ(points.size(), 1U);
   EXPECT_EQ(points.front().At<float>(4), 41.0F);
   things_ = {Box(Ahead(1, 12.0, 0.0), 2.0, 2.0, -heading_rad_)};
   turn_radps_ = 0.0;
   link_->sent.clear();
-  Turn();
+  NextScan();
   points = Frames(support::kObstacleDistance3dId);
   EXPECT_TRUE(Frames(support::kObstacleDistanceId).empty());
   ASSERT_GE(points.size(), 3U);
