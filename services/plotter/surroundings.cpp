@@ -20,6 +20,8 @@ using std::chrono::microseconds;
 // The second lidar turns by itself: its last scan ended within a turn of the first's end.
 constexpr std::int64_t kMostApartUs = 250'000;
 constexpr double kMostM = 1e5;
+// It is told every tenth scan.
+constexpr std::chrono::seconds kWaterlineLasts(3);
 constexpr double kMostMps = 1000.0;
 
 std::vector<Eigen::Vector2d> PlacesOf(const std::vector<LidarSightParams>& lidars) {
@@ -240,6 +242,24 @@ void Surroundings::AddTracks(std::span<const tracks_t> tracks, const Pose& now, 
   }
 }
 
+// Beams meet a beach higher or lower as the boat rolls: what was seen of it before may be nearer than what is seen now.
+void Surroundings::AddLand(const tracks_t& tracks, const Pose& now, Look& look) {
+  const Utime time(microseconds(tracks.end_utime_us));
+  const Datum datum{tracks.datum_latitude_deg, tracks.datum_longitude_deg, tracks.datum_ellipsoid_height_m};
+  if (!tracks.waterline_east_m.empty()) {
+    waterline_ = {time, datum, {}};
+    for (std::size_t i = 0; i < tracks.waterline_east_m.size(); ++i) {
+      const Eigen::Vector2d cell_m(tracks.waterline_east_m[i], tracks.waterline_north_m[i]);
+      if (cell_m.allFinite() && cell_m.norm() < kMostM) waterline_.cells_m.push_back(cell_m);
+    }
+  }
+  if (std::chrono::abs(time - waterline_.time) > kWaterlineLasts || !waterline_.datum.IsSameAs(now.datum)) return;
+  const Eigen::Matrix<double, 2, 3> vessel_from_map = VesselFromHere(now.heading_rad) * now.R_map_here.transpose();
+  for (const auto& cell_m : waterline_.cells_m) {
+    look.sectors.AddPoint(vessel_from_map * (Eigen::Vector3d(cell_m.x(), cell_m.y(), now.position_map_m.z()) - now.position_map_m));
+  }
+}
+
 Look Surroundings::LookAt(std::span<const tracks_t> tracks) {
   Look look;
   look.reach_m = params_.reach_m;
@@ -258,7 +278,10 @@ Look Surroundings::LookAt(std::span<const tracks_t> tracks) {
     const auto is_taken = TakenSegments(*found.labels, i == 0 ? tracks : std::span<const tracks_t>());
     if (AddReturns(lidars_[i], found, is_taken, now, look)) sights[i] = &*lidars_[i].sight;
   }
-  if (now != nullptr) AddTracks(tracks, *now, look);
+  if (now != nullptr) {
+    AddTracks(tracks, *now, look);
+    AddLand(tracks.front(), *now, look);
+  }
   // Without the scan that TRACKS are of nobody knows what else is there.
   if (sights.front() != nullptr) look.is_looked = sector_sight_.Looked(sights);
   return look;

@@ -78,11 +78,19 @@ class Surroundings {
   /// @return whether the own motion within it is known
   bool AddPart(Lidar& lidar, const lidar_scan_t& scan, const segments_t& labels, const std::vector<bool>& is_taken, const Pose* now, Look& look);
   void AddTracks(std::span<const tracks_t> tracks, const Pose& now, Look& look);
+  void AddLand(const tracks_t& tracks, const Pose& now, Look& look);
 
   SurroundingsParams params_;
   std::vector<Lidar> lidars_;
   SectorSight sector_sight_;
   PoseHistory poses_;
+  // Remembered land, as it was told last.
+  struct Waterline {
+    Utime time;
+    Datum datum;
+    std::vector<Eigen::Vector2d> cells_m;  // map, their middles
+  };
+  Waterline waterline_;
   Counts<kCountNames> counts_;
   Counts<messages::kScanFaults> scans_refused_;
   Counts<messages::kSegmentsFaults> labels_refused_;

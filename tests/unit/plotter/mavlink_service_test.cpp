@@ -65,6 +65,7 @@ class MavlinkService : public ::testing::Test {
   std::vector<alert_t> alerts_;
   bool is_sure_ = true;
   std::vector<std::int32_t> land_ids_;
+  std::vector<Vector2d> waterline_m_;
   bool sends_scan_ = true;
   bool sends_labels_ = true;
   std::function<bool(double azimuth_deg)> fires_ = [](double) { return true; };
@@ -178,6 +179,11 @@ class MavlinkService : public ::testing::Test {
     SetDatum(message);
     message.land_segment_ids = land_ids_;
     message.num_land_segments = static_cast<std::int32_t>(land_ids_.size());
+    for (const auto& cell_m : waterline_m_) {
+      message.waterline_east_m.push_back(static_cast<float>(cell_m.x()));
+      message.waterline_north_m.push_back(static_cast<float>(cell_m.y()));
+    }
+    message.num_waterline = static_cast<std::int32_t>(waterline_m_.size());
     support::Fill(message, tracks_);
     support::Send(*bus_, bus::kTracks, message);
   }
@@ -418,6 +424,22 @@ TEST_F(MavlinkService, SendsTheReturnsOfAStructureThatIsSeenAndNotItsOutline) {
     ExpectTruth(*frame);
     EXPECT_EQ(frame->distance_cm(0), 4001);
   }
+}
+
+// On a beach what was seen before, when a beam met it lower, is nearer than what is seen now. TRACKS tell it every tenth scan.
+TEST_F(MavlinkService, SendsRememberedLandUntilItIsToldNoMore) {
+  velocity_mps_ = {0.0, 0.0};
+  turn_radps_ = 0.0;
+  waterline_m_ = {Ahead(0, 15.0, 0.0), Ahead(0, 0.0, 60.0)};
+  auto frame = Last();
+  ASSERT_TRUE(frame);
+  EXPECT_NEAR(frame->distance_cm(0), 1500, 1);
+  EXPECT_EQ(frame->distance_cm(18), 4001);
+  waterline_m_.clear();
+  for (int i = 0; i < 10; ++i) frame = Last();
+  EXPECT_NEAR(frame->distance_cm(0), 1500, 1);
+  Run(25);
+  EXPECT_EQ(Last()->distance_cm(0), 4001);
 }
 
 TEST_F(MavlinkService, SaysUnknownWhereNobodyLooks) {
