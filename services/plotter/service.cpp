@@ -58,6 +58,11 @@ bool Service::MayTellLook() const {
          std::chrono::abs(own_.time - tracks_time_) <= kMostApart && std::ranges::none_of(alerts_, says_nobody_looks);
 }
 
+// An autopilot gets distances, and no targets.
+bool Service::TellsTargets() const {
+  return std::ranges::any_of(outputs_, [](const auto& output) { return output->params().format != Format::kMavlink; });
+}
+
 Told Service::ToldNow() const {
   return {.passed = passed_.passed(),
           .own = own_,
@@ -72,6 +77,11 @@ void Service::TellLook(std::span<const tracks_t> parts) {
   if (!MayTellLook()) return;
   look_told_ = passed_.passed();
   const auto look = surroundings_->LookAt(parts);
+  if (std::ranges::find(look.is_looked, true) != look.is_looked.end()) {
+    sight_lost_.reset();
+  } else if (!sight_lost_) {
+    sight_lost_ = passed_.passed();
+  }
   auto told = ToldNow();
   told.look = &look;
   told.look_time = tracks_time_;
@@ -292,10 +302,13 @@ HealthReport Service::Report() const {
   if (!IsFresh(tracks_seen_)) report.Degrade(fmt::format("no TRACKS for {} s: no targets are sent", silence_s(tracks_seen_)));
   if (!IsFresh(pose_seen_)) {
     report.Degrade(fmt::format("no POSE for {} s: neither own ship nor targets are sent", silence_s(pose_seen_)));
-  } else if (has_pose_ && !own_.is_placed()) {
+  } else if (has_pose_ && !own_.is_placed() && TellsTargets()) {
     report.Degrade("the own position is not known: no targets are sent");
   } else if (IsFresh(tracks_seen_) && std::chrono::abs(own_.time - tracks_time_) > kMostApart) {
     report.Degrade("POSE and TRACKS are not of one time: no targets are sent");
+  }
+  if (MayTellLook() && sight_lost_ && !IsFresh(sight_lost_)) {
+    report.Degrade("LIDAR_SCAN and SEGMENTS of TRACKS do not come, or POSE does not reach over them: no direction is told as clear");
   }
   if (numbers_.num_without() > 0) report.Degrade(fmt::format("{} targets without a number: 00 to 99 are used up", numbers_.num_without()));
   for (const auto& output : outputs_) {

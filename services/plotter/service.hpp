@@ -63,6 +63,7 @@ class Service {
   bool IsFresh(std::optional<std::chrono::microseconds> seen) const;
   bool MayTellTargets() const;
   bool MayTellLook() const;
+  bool TellsTargets() const;
   void StopTargets();
 
   static constexpr auto kCountNames = std::to_array<std::string_view>(
@@ -93,6 +94,7 @@ class Service {
   std::optional<std::chrono::microseconds> pose_seen_;
   std::optional<Surroundings> surroundings_;
   std::optional<std::chrono::microseconds> look_told_;
+  std::optional<std::chrono::microseconds> sight_lost_;  // since when nobody looked in any direction, though TRACKS came
   std::optional<std::chrono::microseconds> own_told_;
   std::optional<std::chrono::microseconds> notices_told_;
   std::int64_t ack_seq_ = 0;
