@@ -43,7 +43,7 @@ class Autopilot : public LiveScene {
   PseudoTerminal terminal_;
   Socket socket_{SOCK_DGRAM};
   std::string bytes_;
-  std::vector<MavlinkFrame> frames_;
+  std::vector<MavlinkFrame> frames_ = {};
 };
 
 TEST_F(Autopilot, GetsDistancesAndIsToldWhenNobodyLooks) {

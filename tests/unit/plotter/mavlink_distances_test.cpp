@@ -27,6 +27,41 @@ TEST_F(MavlinkService, SendsTheTrueDistanceOfEachSectorWhileTheBoatMovesAndTurns
   }
 }
 
+// As of a lidar of many rings.
+TEST_F(MavlinkService, SendsTheSameOfAScanInParts) {
+  is_in_parts_ = true;
+  things_ = {Box(Ahead(1, 12.0, 0.0), 4.0, 2.0, 0.3), Box(Ahead(1, 0.0, -25.0), 60.0, 3.0, 0.5)};
+  for (int i = 0; i < 3; ++i) {
+    const auto frame = Last();
+    ASSERT_TRUE(frame);
+    ExpectTruth(*frame);
+  }
+}
+
+// The second lidar turns by itself: its scan ended 60 ms before the first one's.
+TEST_F(MavlinkService, LooksWithTwoLidars) {
+  auto second = params_.surroundings->lidars.front();
+  second.T_vessel_lidar = TransformVesselSensor({.p_vessel_m = {-1.2, 0.2, 1.0}, .yaw_rad = DegToRad(180.0)});
+  params_.surroundings->lidars.push_back(second);
+  Start();
+  things_ = {Box(Ahead(2, -10.0, 0.0), 3.0, 3.0, 0.3), Box(Ahead(2, 14.0, 2.0), 3.0, 3.0, 0.3)};
+  Run(1);
+  // The first looks ahead and abeam, the second all round but 30 deg ahead: beside the hull both are needed.
+  fires_ = [](double azimuth_deg) { return azimuth_deg < 165.0 || azimuth_deg > 255.0; };
+  auto frame = Last();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->distance_cm(36), MavSectors::kUnknown);
+  Wait(kScanUs);
+  SendScan();
+  fires_ = [](double azimuth_deg) { return azimuth_deg < 165.0 || azimuth_deg > 195.0; };
+  SendScan(1, 60'000);
+  link_->sent.clear();
+  SendTracks();
+  support::HandleAll(*bus_);
+  ASSERT_EQ(Frames(support::kObstacleDistanceId).size(), 1U);
+  ExpectTruth(Frames(support::kObstacleDistanceId).front());
+}
+
 // It is not on the earth, and has no position.
 TEST_F(MavlinkService, SendsTheSameInAFrameOfItsOwn) {
   is_relative_ = true;

@@ -68,6 +68,7 @@ class MavlinkService : public ::testing::Test {
   std::vector<Vector2d> waterline_m_;
   bool sends_scan_ = true;
   bool sends_labels_ = true;
+  bool is_in_parts_ = false;
   std::function<bool(double azimuth_deg)> fires_ = [](double) { return true; };
 
   MavlinkService() {
@@ -129,11 +130,50 @@ class MavlinkService : public ::testing::Test {
     support::Send(*bus_, bus::kPose, pose);
   }
 
-  // A scan of 0.2 deg columns that ends now: each column sees from where the boat was then.
-  void SendScan() {
-    const auto begin_us = host_us_ - kScanUs;
+  // Two halves of a scan or of its labels, by columns; segments stand in the first.
+  template <typename Message>
+  static std::vector<Message> Halves(const Message& whole) {
+    const auto half = whole.num_columns / 2;
+    const auto cells = static_cast<std::ptrdiff_t>(whole.num_cells / whole.num_columns) * half;
+    std::vector<Message> parts(2, whole);
+    for (std::int32_t i = 0; i < 2; ++i) {
+      auto& part = parts[static_cast<std::size_t>(i)];
+      part.part_index = i;
+      part.num_parts = 2;
+      part.first_column = i * half;
+      part.num_columns = i == 0 ? half : whole.num_columns - half;
+      const auto cut = [i](auto& values, std::ptrdiff_t at) {
+        if (i == 0) values.erase(values.begin() + at, values.end());
+        if (i == 1) values.erase(values.begin(), values.begin() + at);
+      };
+      if constexpr (requires { part.label; }) {
+        cut(part.label, cells);
+        part.num_cells = static_cast<std::int32_t>(part.label.size());
+        part.num_labelled = static_cast<std::int32_t>(std::ranges::count(part.label, 1));
+        part.piece.resize(static_cast<std::size_t>(part.num_labelled));
+        if (i == 1) part.segments.clear();
+        part.num_segments = static_cast<std::int32_t>(part.segments.size());
+      } else {
+        cut(part.azimuth_rad, half);
+        cut(part.time_ns, half);
+        cut(part.range, cells);
+        cut(part.reflectivity, cells);
+        part.num_cells = static_cast<std::int32_t>(part.range.size());
+      }
+    }
+    return parts;
+  }
+  template <typename Message>
+  void SendAll(const bus::Channel& channel, const Message& message) {
+    if (!is_in_parts_) return support::Send(*bus_, channel, message);
+    for (const auto& part : Halves(message)) support::Send(*bus_, channel, part);
+  }
+
+  // A scan of 0.2 deg columns that ends so long before now: each column sees from where the boat was then.
+  void SendScan(std::size_t lidar_index = 0, std::int64_t before_us = 0) {
+    const auto begin_us = host_us_ - kScanUs - before_us;
     auto scan = support::OfScan<lidar_scan_t>(begin_us, seq_, kScanUs);
-    const auto& lidar = params_.surroundings->lidars.front();
+    const auto& lidar = params_.surroundings->lidars.at(lidar_index);
     constexpr int kColumns = 1800;
     std::vector<float> azimuth_rad;
     std::vector<std::int32_t> time_ns;
@@ -169,8 +209,8 @@ class MavlinkService : public ::testing::Test {
     segment.hull_x_m = segment.hull_y_m = {1.0F};
     segment.hull_time_us = {0};
     support::Fill(labels, {segment});
-    if (sends_scan_) support::Send(*bus_, bus::kLidarScan, scan);
-    if (sends_labels_) support::Send(*bus_, bus::kSegments, labels);
+    if (sends_scan_) SendAll(lidar_index == 0 ? bus::kLidarScan : bus::kLidarScan2, scan);
+    if (sends_labels_) SendAll(lidar_index == 0 ? bus::kSegments : bus::kSegments2, labels);
   }
 
   void SendTracks() {
