@@ -1,4 +1,4 @@
-// The plotter process: TRACKS, ALERTS and POSE in; NMEA 0183, Signal K and NMEA 2000 out; ALERT_ACK out.
+// The plotter process: TRACKS, ALERTS and POSE in; NMEA 0183, Signal K, NMEA 2000 and MAVLink out; ALERT_ACK out.
 #include <chrono>
 #include <spdlog/spdlog.h>
 #include <thread>
@@ -37,10 +37,11 @@ void Run(lookout::runtime::Process& process, const lookout::plotter::Params& par
 }  // namespace
 
 int main(int argc, char** argv) {
-  return lookout::runtime::ServiceMain<lookout::plotter::Params>(argc, argv,
-                                                                 {.name = "plotter",
-                                                                  .purpose = "TRACKS, ALERTS and POSE in, NMEA 0183, Signal K and NMEA 2000 out",
-                                                                  .load = lookout::plotter::LoadParams,
-                                                                  .run = Run,
-                                                                  .remarks = lookout::plotter::InWords});
+  return lookout::runtime::ServiceMain<lookout::plotter::Params>(
+      argc, argv,
+      {.name = "plotter",
+       .purpose = "TRACKS, ALERTS and POSE in, NMEA 0183, Signal K, NMEA 2000 and MAVLink out",
+       .load = lookout::plotter::LoadParams,
+       .run = Run,
+       .remarks = lookout::plotter::InWords});
 }

@@ -33,6 +33,10 @@ void Output::TellTargets(const Told& told) {
   if (IsOpen(told.passed)) SendTargets(told);
 }
 
+void Output::TellLook(const Told& told) {
+  if (link_->is_open() && IsOpen(told.passed)) SendLook(told);
+}
+
 void Output::StopTargets(const Told& told) {
   if (link_->is_open() && IsOpen(told.passed)) EndTargets(told);
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "services/plotter/core/scene.hpp"
+#include "services/plotter/core/sectors.hpp"
 #include "services/plotter/core/target_numbers.hpp"
 #include "services/plotter/io/link.hpp"
 #include "services/plotter/params.hpp"
@@ -26,6 +27,9 @@ struct Told {
   const TargetNumbers& numbers;
   std::span<const Notice> notices;
   Utime host_time;
+  bool somebody_looks = false;  // ALERTS, TRACKS and POSE are of now, and no alert says otherwise; known where an output of MAVLink is
+  const Look* look = nullptr;   // of the last TRACKS, in TellLook alone
+  Utime look_time = {};         // the end of its scan
 };
 
 /// What people asked for by messages that came back over an output.
@@ -50,6 +54,8 @@ class Output {
   void TellTargets(const Told& told);
   /// Targets may be told no more: their state is not known. Must be called until they may be told again.
   void StopTargets(const Told& told);
+  /// After each TRACKS, while somebody looks, whether or not the boat's place on the earth is known.
+  void TellLook(const Told& told);
   /// The process ends in order: targets are ended, notices stay.
   void Finish(const Told& told);
   /// Ten times a second or more: due notices.
@@ -68,6 +74,7 @@ class Output {
   virtual void SendTargets(const Told& told) = 0;
   virtual void EndTargets(const Told& /*told*/) {}
   virtual void FinishTargets(const Told& told) { EndTargets(told); }
+  virtual void SendLook(const Told& /*told*/) {}
   virtual void SendNotices(const Told& told) = 0;
   /// To a receiver that knows nothing yet.
   virtual void SendAnew() = 0;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "services/plotter/mavlink_output.hpp"
 #include "services/plotter/n2k_output.hpp"
 #include "services/plotter/nmea_output.hpp"
 #include "services/plotter/signal_k_output.hpp"
@@ -35,6 +36,8 @@ std::unique_ptr<Output> MakeOutput(const Params& params, const OutputParams& out
       return std::make_unique<NmeaOutput>(output, std::move(link), params.target_period, RevisionFile::Of(output.name));
     case Format::kSignalK:
       return std::make_unique<SignalKOutput>(output, std::move(link), params.boat);
+    case Format::kMavlink:
+      return std::make_unique<MavlinkOutput>(output, std::move(link));
     default:
       return std::make_unique<N2kOutput>(output, std::move(link), params.target_period);
   }

@@ -13,9 +13,12 @@
 
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
+#include "common/core/angles.hpp"
+#include "common/core/frames.hpp"
 #include "common/io/network.hpp"
 #include "config/schema/navigator.pb.h"
 #include "config/schema/plotter.pb.h"
+#include "config/schema/segmenter.pb.h"
 
 namespace lookout::plotter {
 
@@ -45,6 +48,8 @@ Format ToFormat(config::PlotterOutput::Format format) {
       return Format::kN2kActisense;
     case config::PlotterOutput::N2K_YDEN:
       return Format::kN2kYden;
+    case config::PlotterOutput::MAVLINK:
+      return Format::kMavlink;
     default:
       return Format::kNmea0183;
   }
@@ -58,6 +63,14 @@ SentTargets ToSentTargets(config::PlotterOutput::Targets targets) {
 SentAlerts ToSentAlerts(config::PlotterOutput::Alerts alerts) {
   if (alerts == config::PlotterOutput::ALR) return SentAlerts::kAlr;
   return alerts == config::PlotterOutput::ALF ? SentAlerts::kAlf : SentAlerts::kNone;
+}
+
+MavlinkParams ToMavlink(const config::MavlinkOptions& options) {
+  return {.system_id = options.system_id(),
+          .component_id = options.component_id(),
+          .form = options.form() == config::MavlinkOptions::POINTS ? MavlinkForm::kPoints : MavlinkForm::kSectors,
+          .max_distance_m = options.max_distance_m(),
+          .sends_alerts = options.sends_alerts()};
 }
 
 // Reads the outputs and collects their faults, each at the line where its output begins.
@@ -126,6 +139,7 @@ class OutputsReader {
     params.target_talker = output.target_talker();
     params.own_ship_talker = output.own_ship_talker();
     params.takes_acknowledgements = output.takes_acknowledgements();
+    params.mavlink = ToMavlink(output.mavlink());
     const int num_kinds = static_cast<int>(output.has_udp()) + static_cast<int>(output.has_tcp_server()) + static_cast<int>(output.has_tcp_client()) +
                           static_cast<int>(output.has_serial()) + static_cast<int>(output.has_websocket());
     Require(num_kinds == 1, fmt::format("must have one of udp, tcp_server, tcp_client, serial and websocket, and has {}", num_kinds));
@@ -138,9 +152,12 @@ class OutputsReader {
   void CheckFormat(const config::PlotterOutput& output, const OutputParams& params) {
     const bool is_nmea = params.format == Format::kNmea0183;
     Require(!output.has_websocket() || params.format == Format::kSignalK, "a websocket carries format SIGNALK only");
-    Require(!output.has_serial() || is_nmea, "a serial port carries format NMEA0183 only");
+    const bool is_mavlink = params.format == Format::kMavlink;
+    Require(!output.has_serial() || is_nmea || is_mavlink, "a serial port carries formats NMEA0183 and MAVLINK only");
+    if (is_mavlink) CheckMavlink(output);
+    Require(is_mavlink || !output.has_mavlink(), "mavlink is of format MAVLINK only");
     Require(!params.takes_acknowledgements || !output.has_udp(), "nothing comes back over udp: takes_acknowledgements must be false");
-    Require(!params.takes_acknowledgements || is_nmea || params.format == Format::kSignalK, "NMEA 2000 brings no acknowledgements back");
+    Require(!params.takes_acknowledgements || is_nmea || params.format == Format::kSignalK, "NMEA 2000 and MAVLink bring no acknowledgements back");
     Require(!params.takes_acknowledgements || !is_nmea || params.alerts != SentAlerts::kNone,
             "takes_acknowledgements wants alerts: ALR (acknowledged by ACK) or ALF (by ACN)");
     if (is_nmea) {
@@ -150,6 +167,14 @@ class OutputsReader {
       Require(!output.has_targets() && !output.has_alerts() && !output.has_unit() && !output.has_target_talker() && !output.has_own_ship_talker(),
               "targets, alerts, unit and talkers are of format NMEA0183 only");
     }
+  }
+
+  void CheckMavlink(const config::PlotterOutput& output) {
+    // Ten messages of sectors a second take a third of it, and what waits is old.
+    constexpr int kLeastBaud = 57'600;
+    Require(output.has_udp() || output.has_serial(), "format MAVLINK goes over udp or a serial port");
+    Require(!output.has_serial() || output.serial().baud() >= kLeastBaud, fmt::format("MAVLINK wants a serial port of {} baud or more", kLeastBaud));
+    Require(!output.has_sends_own_ship(), "sends_own_ship is not of format MAVLINK: an autopilot has its own position");
   }
 
   std::string ReadAddress(const std::string& address) {
@@ -256,6 +281,10 @@ std::string InWords(const OutputParams& output) {
       return "NMEA 2000 as Actisense text";
     case Format::kN2kYden:
       return "NMEA 2000 as YDEN text";
+    case Format::kMavlink:
+      return fmt::format("MAVLink 2 {} to {:g} m as system {} component {}{}",
+                         output.mavlink.form == MavlinkForm::kPoints ? "OBSTACLE_DISTANCE_3D" : "OBSTACLE_DISTANCE", output.mavlink.max_distance_m,
+                         output.mavlink.system_id, output.mavlink.component_id, output.mavlink.sends_alerts ? " and alerts" : "");
     default:
       break;
   }
@@ -264,6 +293,40 @@ std::string InWords(const OutputParams& output) {
   if (output.sends_own_ship) words += " RMC HDT";
   if (output.alerts != SentAlerts::kNone) words += output.alerts == SentAlerts::kAlr ? " ALR" : " ALF";
   return words;
+}
+
+LidarSightParams ToLidarSight(const config::BoatFacts& boat, const config::Segmenter& segmenter, double reach_m) {
+  constexpr double kWholeCircleDeg = 360.0;
+  LidarSightParams params;
+  params.T_vessel_lidar = boat.T_vessel_lidar;
+  params.above_water_m = boat.reference_point_above_water_m + boat.T_vessel_lidar.translation().z();
+  params.min_range_m = segmenter.min_range_m();
+  if (segmenter.field_of_view_width_deg() < kWholeCircleDeg)
+    params.field_of_view = {DegToRad(segmenter.field_of_view_start_deg()), DegToRad(segmenter.field_of_view_width_deg())};
+  params.own_vessel_box_m = boat.own_vessel_box_m;
+  params.reach_m = reach_m;
+  return params;
+}
+
+// nullopt: no output wants them.
+std::optional<SurroundingsParams> ToSurroundings(const Params& params, const config::BoatFacts& boat, const fs::path& config_folder) {
+  SurroundingsParams result;
+  for (const auto& output : params.outputs) {
+    if (output.format == Format::kMavlink) result.reach_m = std::max(result.reach_m, output.mavlink.max_distance_m);
+  }
+  if (result.reach_m <= 0.0) return std::nullopt;
+  const auto segmenter = config::Load<config::Segmenter>(config_folder, "segmenter.txtpb");
+  result.own_vessel_box_m = boat.own_vessel_box_m;
+  result.takes_tentative = params.takes_tentative;
+  result.lidars.push_back(ToLidarSight(boat, segmenter, result.reach_m));
+  if (boat.lidar_2) {
+    auto second = result.lidars.front();
+    second.T_vessel_lidar = TransformVesselSensor(*boat.lidar_2);
+    second.above_water_m = boat.reference_point_above_water_m + second.T_vessel_lidar.translation().z();
+    second.field_of_view = {};
+    result.lidars.push_back(second);
+  }
+  return result;
 }
 
 }  // namespace
@@ -281,6 +344,7 @@ Params LoadParams(const fs::path& config_folder) {
   params.number_quarantine = ToMicroseconds(message->number_quarantine_s());
   params.outputs = *outputs;
   params.boat = boat->name;
+  params.surroundings = ToSurroundings(params, *boat, config_folder);
   return params;
 }
 

@@ -1,18 +1,30 @@
-// Config of the plotter process (boat.txtpb, plotter.txtpb) as checked values.
+// Config of the plotter process (boat.txtpb, plotter.txtpb; of segmenter.txtpb what it takes) as checked values.
 #pragma once
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "services/plotter/core/lidar_sight.hpp"
 #include "services/plotter/core/nmea0183.hpp"
 
 namespace lookout::plotter {
 
-enum class Format { kNmea0183, kSignalK, kN2kActisense, kN2kYden };
+enum class Format { kNmea0183, kSignalK, kN2kActisense, kN2kYden, kMavlink };
 enum class SentTargets { kTtm, kTll, kNone };
 enum class SentAlerts { kNone, kAlr, kAlf };
+
+enum class MavlinkForm { kSectors, kPoints };
+
+struct MavlinkParams {
+  int system_id = 1;
+  int component_id = 196;
+  MavlinkForm form = MavlinkForm::kSectors;
+  double max_distance_m = 40.0;
+  bool sends_alerts = true;
+};
 
 /// The receiver of an output. Members that its kind does not use are empty.
 struct Destination {
@@ -39,6 +51,7 @@ struct OutputParams {
   std::string target_talker = "RA";
   std::string own_ship_talker = "II";
   bool takes_acknowledgements = false;
+  MavlinkParams mavlink = {};
 };
 
 struct Params {
@@ -48,9 +61,10 @@ struct Params {
   std::chrono::microseconds own_ship_period{1'000'000};
   std::chrono::microseconds number_quarantine{60'000'000};
   std::vector<OutputParams> outputs = {};
+  std::optional<SurroundingsParams> surroundings = std::nullopt;  // where an output is of MAVLink
 };
 
-/// @param config_folder  the boat's folder, holding boat.txtpb and plotter.txtpb
+/// @param config_folder  the boat's folder, holding boat.txtpb and plotter.txtpb; segmenter.txtpb is read where an output is of MAVLink
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
 

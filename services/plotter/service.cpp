@@ -31,6 +31,17 @@ Service::Service(bus::Bus& bus, const Params& params, std::vector<std::unique_pt
   bus::Subscribe<tracks_t>(bus_, bus::kTracks, [this](const tracks_t& message) { OnTracks(message); });
   bus::Subscribe<alerts_t>(bus_, bus::kAlerts, [this](const alerts_t& message) { OnAlerts(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
+  if (params_.surroundings) SubscribeSurroundings();
+}
+
+// Large messages, and nobody else here wants them.
+void Service::SubscribeSurroundings() {
+  surroundings_.emplace(*params_.surroundings);
+  bus::Subscribe<lidar_scan_t>(bus_, bus::kLidarScan, [this](const lidar_scan_t& message) { surroundings_->OnScan(0, message); });
+  bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { surroundings_->OnLabels(0, message); });
+  if (params_.surroundings->lidars.size() < 2) return;
+  bus::Subscribe<lidar_scan_t>(bus_, bus::kLidarScan2, [this](const lidar_scan_t& message) { surroundings_->OnScan(1, message); });
+  bus::Subscribe<segments_t>(bus_, bus::kSegments2, [this](const segments_t& message) { surroundings_->OnLabels(1, message); });
 }
 
 bool Service::IsFresh(std::optional<std::chrono::microseconds> seen) const { return seen && passed_.passed() - *seen < kFresh; }
@@ -40,7 +51,42 @@ bool Service::MayTellTargets() const {
          std::chrono::abs(own_.time - tracks_time_) <= kMostApart;
 }
 
-Told Service::ToldNow() const { return {passed_.passed(), own_, targets_, numbers_, notices_, now_.value_or(Utime())}; }
+// Distances need no place on the earth.
+bool Service::MayTellLook() const {
+  const auto says_nobody_looks = [](const Notice& notice) { return notice.cause == Cause::kWatch && Holds(notice); };
+  return surroundings_ && has_pose_ && IsFresh(alerts_seen_) && IsFresh(tracks_seen_) && IsFresh(pose_seen_) &&
+         std::chrono::abs(own_.time - tracks_time_) <= kMostApart && std::ranges::none_of(alerts_, says_nobody_looks);
+}
+
+// An autopilot gets distances, and no targets.
+bool Service::TellsTargets() const {
+  return std::ranges::any_of(outputs_, [](const auto& output) { return output->params().format != Format::kMavlink; });
+}
+
+Told Service::ToldNow() const {
+  return {.passed = passed_.passed(),
+          .own = own_,
+          .targets = targets_,
+          .numbers = numbers_,
+          .notices = notices_,
+          .host_time = now_.value_or(Utime()),
+          .somebody_looks = MayTellLook() && IsFresh(look_told_)};
+}
+
+void Service::TellLook(std::span<const tracks_t> parts) {
+  if (!MayTellLook()) return;
+  look_told_ = passed_.passed();
+  const auto look = surroundings_->LookAt(parts);
+  if (std::ranges::find(look.is_looked, true) != look.is_looked.end()) {
+    sight_lost_.reset();
+  } else if (!sight_lost_) {
+    sight_lost_ = passed_.passed();
+  }
+  auto told = ToldNow();
+  told.look = &look;
+  told.look_time = tracks_time_;
+  for (const auto& output : outputs_) output->TellLook(told);
+}
 
 void Service::OnTracks(const tracks_t& message) {
   if (const auto part = ToTracksPart(message); const auto* refusal = std::get_if<Fault>(&part)) return tracks_refused_.Add(*refusal);
@@ -79,6 +125,7 @@ void Service::UseTracks(std::span<const tracks_t> parts) {
   begin_ = begin;
   tracks_time_ = time;
   tracks_ = std::move(tracks);
+  TellLook(parts);
   if (!MayTellTargets()) return;
   are_told_ = true;
   ComposeTargets();
@@ -129,9 +176,11 @@ void Service::TellNotices() {
 }
 
 void Service::OnPose(const pose_t& message) {
-  if (const auto pose = messages::ToPose(message); const auto* refusal = std::get_if<Fault>(&pose)) return poses_refused_.Add(*refusal);
+  const auto pose = messages::ToPose(message);
+  if (const auto* refusal = std::get_if<Fault>(&pose)) return poses_refused_.Add(*refusal);
   const auto own = ToOwnShip(message);
   if (has_pose_ && own.time == own_.time) return;  // the same again says nothing of now
+  if (surroundings_) surroundings_->OnPose(std::get<Pose>(pose));
   own_ = own;
   has_pose_ = true;
   pose_seen_ = passed_.passed();
@@ -241,6 +290,7 @@ HealthReport Service::Report() const {
   tracks_refused_.AppendTo(report.counters);
   alerts_refused_.AppendTo(report.counters);
   poses_refused_.AppendTo(report.counters);
+  if (surroundings_) surroundings_->AppendTo(report.counters);
   std::int64_t num_refused = 0;
   std::int64_t num_dropped = 0;
   for (const auto& output : outputs_) {
@@ -261,10 +311,13 @@ HealthReport Service::Report() const {
   if (!IsFresh(tracks_seen_)) report.Degrade(fmt::format("no TRACKS for {} s: no targets are sent", silence_s(tracks_seen_)));
   if (!IsFresh(pose_seen_)) {
     report.Degrade(fmt::format("no POSE for {} s: neither own ship nor targets are sent", silence_s(pose_seen_)));
-  } else if (has_pose_ && !own_.is_placed()) {
+  } else if (has_pose_ && !own_.is_placed() && TellsTargets()) {
     report.Degrade("the own position is not known: no targets are sent");
   } else if (IsFresh(tracks_seen_) && std::chrono::abs(own_.time - tracks_time_) > kMostApart) {
     report.Degrade("POSE and TRACKS are not of one time: no targets are sent");
+  }
+  if (MayTellLook() && sight_lost_ && !IsFresh(sight_lost_)) {
+    report.Degrade("LIDAR_SCAN and SEGMENTS of TRACKS do not come, or POSE does not reach over them: no direction is told as clear");
   }
   if (numbers_.num_without() > 0) report.Degrade(fmt::format("{} targets without a number: 00 to 99 are used up", numbers_.num_without()));
   for (const auto& output : outputs_) {

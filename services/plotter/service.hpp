@@ -20,12 +20,14 @@
 #include "services/plotter/core/target_numbers.hpp"
 #include "services/plotter/output.hpp"
 #include "services/plotter/params.hpp"
+#include "services/plotter/surroundings.hpp"
 #include "services/plotter/wire.hpp"
 
 namespace lookout::plotter {
 
 /// Nothing old is told as new. Targets are told with each TRACKS, while ALERTS, TRACKS and POSE came within kFresh of host time and POSE knows the
-/// position; the own ship while POSE came within kFresh. That ALERTS are missing, or a position, is itself a notice.
+/// position; the own ship while POSE came within kFresh; the surroundings, where an output takes them, with each TRACKS as targets, whether or not
+/// the position is known, and not while an alert says that nobody looks. That ALERTS are missing, or a position, is itself a notice.
 class Service {
  public:
   static constexpr std::chrono::seconds kFresh{1};
@@ -49,6 +51,8 @@ class Service {
   void OnPose(const pose_t& message);
 
   void UseTracks(std::span<const tracks_t> parts);
+  void SubscribeSurroundings();
+  void TellLook(std::span<const tracks_t> parts);
   void ComposeTargets();
   void ComposeNotices();
   std::optional<Notice> OwnNotice() const;
@@ -59,6 +63,8 @@ class Service {
   Told ToldNow() const;
   bool IsFresh(std::optional<std::chrono::microseconds> seen) const;
   bool MayTellTargets() const;
+  bool MayTellLook() const;
+  bool TellsTargets() const;
   void StopTargets();
 
   static constexpr auto kCountNames = std::to_array<std::string_view>({"tracks_incomplete", "tracks_inconsistent", "acks_sent", "acks_of_no_alert",
@@ -87,6 +93,9 @@ class Service {
   std::optional<std::chrono::microseconds> tracks_seen_;  // by passed_
   std::optional<std::chrono::microseconds> alerts_seen_;
   std::optional<std::chrono::microseconds> pose_seen_;
+  std::optional<Surroundings> surroundings_;
+  std::optional<std::chrono::microseconds> look_told_;
+  std::optional<std::chrono::microseconds> sight_lost_;  // since when nobody looked in any direction, though TRACKS came
   std::optional<std::chrono::microseconds> own_told_;
   std::optional<std::chrono::microseconds> notices_told_;
   std::int64_t ack_seq_ = 0;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "services/plotter/core/alert_sentences.hpp"
+#include "services/plotter/core/mavlink.hpp"
 #include "services/plotter/core/nmea0183.hpp"
 #include "services/plotter/core/signal_k.hpp"
 
@@ -28,6 +29,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (Alr("RA", notice, {}).size() > kMaxSentenceBytes) std::abort();
   const auto alf = Alf("RA", notice, {}, 0, 1);
   if (alf.find('$', 1) > kMaxSentenceBytes || alf.size() - alf.find('$', 1) > kMaxSentenceBytes) std::abort();
+  // Each frame of a text holds at most 50 bytes of it.
+  for (const auto& frame : MavlinkWriter(1, 196).StatusText(MavSeverity::kNotice, text)) {
+    if (frame.size() > 66) std::abort();
+  }
   const auto echoes = ReadDelta(NoticeDelta(notice, BoatWord(text), {}));
   if (echoes.is_wrong || echoes.echoes.size() != 1 || echoes.echoes[0].is_acknowledged || echoes.echoes[0].is_quiet) std::abort();
   return 0;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One trial of the plotter with programs of others, in a network namespace of its own.
-#   peers_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (sentences, n2k, signalk or gpsd)
+#   peers_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (sentences, n2k, mavlink, signalk or gpsd)
 # Packages of npm are installed into the build folder, as package-lock.json has them: without the network the trial is skipped.
 set -euo pipefail
 trial=$1
@@ -33,7 +33,7 @@ case $trial in
     mkdir -p "$build/peers"
     GO111MODULE=off GOPATH=/usr/share/gocode GOCACHE=$build/peers/go_cache go build -o "$build/peers/sentences" "$here/sentences.go"
     ;;
-  n2k | signalk) install_npm_packages "$build/peers/npm" ;;
+  n2k | mavlink | signalk) install_npm_packages "$build/peers/npm" ;;
   gpsd)
     gpsd=/usr/sbin/gpsd
     [ -x $gpsd ] || gpsd=$source_folder/build/gpsd/usr/sbin/gpsd

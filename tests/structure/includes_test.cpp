@@ -116,6 +116,7 @@ const std::vector<Rule>& Rules() {
       {"services/plotter/revision_file\\..pp", {"common/core", "common/io", "OWN", "OWN/core", "fmt"}},
       {"services/tracker/alert_text\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
       // One language each, over a link.
+      {"services/plotter/surroundings\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
       {"services/plotter/([a-z0-9_]+_)?outputs?\\..pp", {"common/core", "OWN", "OWN/core", "OWN/io"}},
       // The page: messages to browsers go by its own server.
       {"services/page/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "OWN/io", "wire types"}},

@@ -27,12 +27,22 @@ class PlotterScene {
   std::vector<alert_t> alerts;
   bool has_alerts = true;  // else ALERTS are not sent
   bool has_pose = true;
+  bool has_tracks = true;
+  bool has_scan = false;  // LIDAR_SCAN and SEGMENTS of open water without a return
 
   /// POSE, TRACKS and ALERTS of a scan that has just ended.
   void SendScan() {
-    const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
-    if (has_pose) SendPose(now_us / 20'000 * 20'000);
-    SendTracks(now_us);
+    auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+    if (has_scan) now_us = now_us / 20'000 * 20'000;  // TRACKS of a scan come when POSE has reached its end
+    if (has_pose) {
+      // The boat's way within the scan is known.
+      const auto newest_us = now_us / 20'000 * 20'000;
+      const auto first_us = std::max(last_pose_us_ + 20'000, newest_us - 2 * kScanUs);
+      for (auto pose_us = has_scan ? first_us : newest_us; pose_us <= newest_us; pose_us += 20'000) SendPose(pose_us);
+      last_pose_us_ = newest_us;
+    }
+    if (has_scan) SendScanOfWater(now_us);
+    if (has_tracks) SendTracks(now_us);
     if (has_alerts) SendAlerts(now_us);
     ++seq_;
   }
@@ -61,6 +71,22 @@ class PlotterScene {
     pose.velocity_map_mps[0] = 2.0;
     pose.heading_rad = 1.5;
     bus::Publish(bus_, bus::kPose, pose);
+  }
+
+  void SendScanOfWater(std::int64_t end_utime_us) {
+    auto scan = OfScan<lidar_scan_t>(end_utime_us - kScanUs, seq_, kScanUs);
+    constexpr int kColumns = 900;
+    std::vector<float> azimuth_rad;
+    std::vector<std::int32_t> time_ns;
+    for (int i = 0; i < kColumns; ++i) {
+      azimuth_rad.push_back(static_cast<float>(i * 2.0 * 3.14159265358979 / kColumns));
+      time_ns.push_back(static_cast<std::int32_t>(i * kScanUs * 1000 / kColumns));
+    }
+    FillColumns(scan, azimuth_rad, time_ns, 0);
+    scan.elevation_rad = {-0.02F, 0.0F};
+    auto labels = LabelsOf(scan, 0);
+    bus::Publish(bus_, bus::kLidarScan, scan);
+    bus::Publish(bus_, bus::kSegments, labels);
   }
 
   // On rings around the boat, half of them moving; in parts, as the tracker sends them.
@@ -102,6 +128,7 @@ class PlotterScene {
   bus::LcmBus& bus_;
   std::int64_t seq_ = 0;
   std::int64_t pose_seq_ = 0;
+  std::int64_t last_pose_us_ = 0;
 };
 
 }  // namespace lookout::support

@@ -22,9 +22,9 @@ class PlotterParams : public ::testing::Test {
     return LoadParams(folder_ / "config");
   }
   // All faults, or nothing.
-  std::string FaultOf(const std::string& output) {
+  std::string FaultOf(const std::string& output, const std::string& format = "NMEA0183") {
     try {
-      Load("output { name: 'x' format: NMEA0183 " + output + " }\n");
+      Load("output { name: 'x' format: " + format + " " + output + " }\n");
       return {};
     } catch (const config::ConfigError& error) {
       return error.what();
@@ -54,10 +54,26 @@ TEST_F(PlotterParams, SayWhatGoesWhere) {
             "# plotter.txtpb: output 'b': Signal K, WebSocket ws://::1:3000/signalk/v1/stream?subscribe=none without a token\n");
 }
 
+TEST_F(PlotterParams, HoldAnAutopilotsDistancesAndTheSightOfTheBoatsLidars) {
+  const auto params = Load(
+      "output { name: 'a' format: MAVLINK udp { address: '192.168.1.7' port: 14550 } }\n"
+      "output { name: 'b' format: MAVLINK serial { device: '/dev/ttyACM0' baud: 115200 }\n"
+      "         mavlink { system_id: 2 component_id: 1 form: POINTS max_distance_m: 60 sends_alerts: false } }\n");
+  EXPECT_EQ(InWords(params),
+            "# plotter.txtpb: output 'a': MAVLink 2 OBSTACLE_DISTANCE to 40 m as system 1 component 196 and alerts, UDP to 192.168.1.7 port 14550\n"
+            "# plotter.txtpb: output 'b': MAVLink 2 OBSTACLE_DISTANCE_3D to 60 m as system 2 component 1, serial port /dev/ttyACM0 at 115200 baud\n");
+  ASSERT_TRUE(params.surroundings);
+  EXPECT_EQ(params.surroundings->reach_m, 60.0);
+  ASSERT_EQ(params.surroundings->lidars.size(), 1U);
+  EXPECT_NEAR(params.surroundings->lidars.front().above_water_m, 1.5, 1e-9);
+  EXPECT_FALSE(Load("output { name: 'x' format: NMEA0183 udp { address: '127.0.0.1' port: 2000 } }").surroundings);
+}
+
 TEST_F(PlotterParams, RefuseWhatCannotBe) {
   EXPECT_TRUE(Says("", "must have one of udp, tcp_server, tcp_client, serial and websocket, and has 0"));
   EXPECT_TRUE(Says("udp { address: 'tablet' port: 2000 }", "'tablet' is no numeric address"));
   EXPECT_TRUE(Says("udp { address: '0.0.0.0' port: 2000 }", "must be of a receiver"));
+  EXPECT_TRUE(Says("udp { address: '127.0.0.1' port: 2000 } mavlink { system_id: 2 }", "mavlink is of format MAVLINK only"));
   EXPECT_TRUE(Says("websocket { address: '127.0.0.1' }", "a websocket carries format SIGNALK only"));
   EXPECT_TRUE(Says("serial { device: 'ttyUSB0' baud: 4800 }", "the whole path"));
   EXPECT_TRUE(Says("serial { device: '/dev/ttyUSB0' baud: 4801 }", "none that serial ports have"));
@@ -65,6 +81,18 @@ TEST_F(PlotterParams, RefuseWhatCannotBe) {
   EXPECT_TRUE(Says("udp { address: '10.0.0.1' port: 2000 } alerts: ALR takes_acknowledgements: true", "nothing comes back over udp"));
   EXPECT_TRUE(Says("tcp_client { address: '10.0.0.1' port: 2000 } takes_acknowledgements: true", "wants alerts"));
   EXPECT_NE(FaultOf("udp { address: '10.0.0.1' port: 0 }").find("port"), std::string::npos);
+}
+
+TEST_F(PlotterParams, RefuseWhatAnAutopilotCannotGet) {
+  const auto fault = [this](const std::string& output) { return FaultOf(output, "MAVLINK"); };
+  EXPECT_EQ(fault("udp { address: '10.0.0.1' port: 14550 }"), "");
+  EXPECT_NE(fault("tcp_client { address: '10.0.0.1' port: 5760 }").find("format MAVLINK goes over udp or a serial port"), std::string::npos);
+  EXPECT_NE(fault("serial { device: '/dev/ttyACM0' baud: 38400 }").find("MAVLINK wants a serial port of 57600 baud or more"), std::string::npos);
+  EXPECT_NE(fault("udp { address: '10.0.0.1' port: 14550 } mavlink { max_distance_m: 0.5 }").find("max_distance_m"), std::string::npos);
+  EXPECT_NE(fault("udp { address: '10.0.0.1' port: 14550 } mavlink { system_id: 256 }").find("system_id"), std::string::npos);
+  EXPECT_NE(fault("udp { address: '10.0.0.1' port: 14550 } alerts: ALR").find("of format NMEA0183 only"), std::string::npos);
+  EXPECT_NE(fault("serial { device: '/dev/ttyACM0' baud: 115200 } takes_acknowledgements: true").find("bring no acknowledgements back"),
+            std::string::npos);
 }
 
 // A position of ours that comes back as one that was measured would hide that none is.

@@ -1,0 +1,46 @@
+// MAVLink 2 for one autopilot.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "services/plotter/core/mavlink.hpp"
+#include "services/plotter/core/notice_schedule.hpp"
+#include "services/plotter/output.hpp"
+
+namespace lookout::plotter {
+
+/// Of a look, in centimetres rounded down: distances below MavSectors::min_distance_cm are that, as receivers take no nearer ones. A sector in which
+/// nothing is within the distance is clear (max_distance + 1) where somebody looked, else unknown.
+MavSectors ToMavSectors(const Look& look, Utime time, double max_distance_m);
+
+/// The nearest place of each sector, nearest first, at most `most_points`; where none is within the distance and somebody looked, one beyond it,
+/// which empties a receiver's fence.
+std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_distance_m, std::size_t most_points);
+
+class MavlinkOutput : public Output {
+ public:
+  static constexpr std::chrono::seconds kHeartbeatPeriod{1};
+
+  MavlinkOutput(const OutputParams& params, std::unique_ptr<Link> link)
+      : Output(params, std::move(link)), writer_(params.mavlink.system_id, params.mavlink.component_id) {}
+
+ private:
+  void SendOwnShip(const Told& /*told*/) override {}
+  void SendTargets(const Told& /*told*/) override {}
+  void SendLook(const Told& told) override;
+  /// And the heartbeat.
+  void SendNotices(const Told& told) override;
+  void SendAnew() override;
+
+  void SendText(MavSeverity severity, std::string_view text);
+  void TellWhetherSomebodyLooks(const Told& told);
+
+  MavlinkWriter writer_;
+  NoticeSchedule notices_;
+  std::optional<std::chrono::microseconds> heartbeat_sent_;
+  std::optional<bool> told_looks_;
+};
+
+}  // namespace lookout::plotter
