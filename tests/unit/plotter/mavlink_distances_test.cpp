@@ -85,12 +85,12 @@ TEST_F(MavlinkService, SendsWhatTheLidarSawWherePoseKnowsNothing) {
   ExpectTruth(*frame);
 }
 
-// The boat has turned right round under a wall that stands.
+// The boat turns by 240 deg beside a wall that stands.
 TEST_F(MavlinkService, FollowsATurnOfTheBoat) {
   velocity_mps_ = {0.0, 0.0};
-  turn_radps_ = DegToRad(60.0);
+  turn_radps_ = DegToRad(120.0);
   things_ = {Box(place_m_ + Vector2d(0.0, 10.0), 8.0, 1.0, 0.0)};
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 20; ++i) {
     const auto frame = Last();
     ASSERT_TRUE(frame);
     ExpectTruth(*frame);

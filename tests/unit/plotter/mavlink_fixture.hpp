@@ -277,11 +277,11 @@ class MavlinkService : public ::testing::Test {
     return frames.empty() ? std::nullopt : std::optional(frames.back());
   }
 
-  // Nearest edge of anything in a sector around the boat of now, by steps of 0.02 deg; the sector made wider or narrower by so much at each side.
+  // Nearest edge of anything in a sector around the boat of now, by steps of 0.05 deg; the sector made wider or narrower by so much at each side.
   double TrueDistance(std::size_t sector, double wider_deg) const {
     double least_m = kNothing;
     const double half_deg = kSectorDeg / 2.0 + wider_deg;
-    for (double within_deg = -half_deg; within_deg <= half_deg; within_deg += 0.02) {
+    for (double within_deg = -half_deg; within_deg <= half_deg; within_deg += 0.05) {
       const double from_north_rad = HeadingAt(host_us_) + DegToRad(static_cast<double>(sector) * kSectorDeg + within_deg);
       least_m = std::min(least_m, RangeTo(things_, PlaceAt(host_us_), {std::sin(from_north_rad), std::cos(from_north_rad)}));
     }

@@ -75,13 +75,13 @@ TEST(Sectors, AreAllHitByAnOutlineAroundTheBoat) {
 TEST(Sectors, HoldTheNearestPlaceOfAnyEdge) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(-30.0, 30.0);
-  for (int run = 0; run < 300; ++run) {
+  for (int run = 0; run < 100; ++run) {
     const Vector2d from(place(random), place(random));
     const Vector2d to(place(random), place(random));
     Sectors sectors;
     sectors.AddEdge(from, to);
     std::vector<double> truth(kNumSectors, kNothing);
-    constexpr int kSteps = 20'000;
+    constexpr int kSteps = 5'000;
     for (int i = 0; i <= kSteps; ++i) {
       const Vector2d p = from + (to - from) * i / kSteps;
       auto& least = truth[Sectors::IndexOf(p)];
@@ -90,7 +90,7 @@ TEST(Sectors, HoldTheNearestPlaceOfAnyEdge) {
     for (std::size_t i = 0; i < kNumSectors; ++i) {
       // A sector that the edge touches by less than a step may have none of the steps.
       if (truth[i] == kNothing) continue;
-      EXPECT_NEAR(sectors.distance_m(i), truth[i], 0.005) << "run " << run << " sector " << i;
+      EXPECT_NEAR(sectors.distance_m(i), truth[i], 0.02) << "run " << run << " sector " << i;
       EXPECT_NEAR(sectors.nearest_m(i).norm(), sectors.distance_m(i), 1e-12);
     }
   }
