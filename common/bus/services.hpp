@@ -69,7 +69,7 @@ inline constexpr std::array kServices{
                "serial",
                "checks the config",
                "target numbers, what was told to whom",
-               {&kTracks, &kAlerts, &kPose}},
+               {&kTracks, &kAlerts, &kPose, &kAis}},
     ServiceRow{"page",
                "page",
                "the look-out in a browser",
@@ -77,7 +77,7 @@ inline constexpr std::array kServices{
                "logs",
                "checks the config",
                "who watches, the last minutes where no recorder runs",
-               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kAlertAck}},
+               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kAlertAck, &kAis}},
     ServiceRow{"recorder", "recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
 
 constexpr bool Publishes(const ServiceRow& service, const Channel& channel) { return channel.publisher == service.role; }

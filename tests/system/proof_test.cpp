@@ -338,7 +338,7 @@ class ProofOfARestart : public Proof, public ::testing::WithParamInterface<std::
 TEST_P(ProofOfARestart, IsReplayedSo) {
   const auto& [victim, signal] = GetParam();
   const auto live = WithoutLoss([&, &who = victim, by = signal](const std::string& attempt) { return RunWithARestart(attempt, who, by); },
-                                {"recorder lost TRACKS", "recorder lost ALERTS"});  // that nobody sent
+                                {"recorder lost TRACKS", "recorder lost ALERTS", "ais lost TRACKS"});  // that nobody sent
   ASSERT_FALSE(HasFailure());
   if (victim == "tracker") {
     EXPECT_EQ(NumBegins(live), 2U);
