@@ -172,7 +172,7 @@ std::optional<ShipNames> ToShipNames(const ais_t& message) {
     if (ship.state != ais_ship_t::STATE_TRACKED) continue;
     auto number = std::to_string(ship.mmsi);
     number.insert(0, number.size() < kMmsiDigits ? kMmsiDigits - number.size() : 0, '0');
-    names.name_of_track[ship.track_id] = IsName(ship.name) ? ship.name : "MMSI " + number;
+    names.name_of_track[ship.track_id] = lookout::IsName(ship.name) ? ship.name : "MMSI " + number;
   }
   return names;
 }
