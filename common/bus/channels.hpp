@@ -29,6 +29,7 @@ inline constexpr Channel kAttitude{"ATTITUDE", "attitude_t", "navigator", 100, 2
 inline constexpr Channel kPose{"POSE", "pose_t", "navigator", 50, 1000, false, true};  // 0.1 s to 10 s come at once
 inline constexpr Channel kObstacles{"OBSTACLES", "obstacles_t", "georeferencer", 80, 160, false, true};
 inline constexpr Channel kTracks{"TRACKS", "tracks_t", "tracker", 80, 160, false, true};
+inline constexpr Channel kAis{"AIS", "ais_t", "ais", 20, 40, false, true};
 inline constexpr Channel kAlerts{"ALERTS", "alerts_t", "tracker", 22, 44, false, true};  // one a scan, and two a second where nobody looks
 // Of a second lidar: config/<boat>/lidar_2.txtpb. Its segments go into OBSTACLES.
 inline constexpr Channel kLidarPackets2{"LIDAR_PACKETS_2", "lidar_packets_t", "lidar", 100, 200, true, true};
@@ -45,9 +46,9 @@ inline constexpr Channel kRunInfo{"RUN_INFO", "run_info_t", "recorder", 1, 10, f
 // Of a simulation: stands in its own log, never on a boat's bus.
 inline constexpr Channel kSimTruth{"SIM_TRUTH", "sim_truth_t", "sim", 80, 160, false, false};
 
-inline constexpr std::array kChannels{kLidarBeams,    kLidarPackets, kLidarScan,   kLidarClock, kLidarOdometry, kLidarNmea, kSegments, kNavRaw,
-                                      kGnssFix,       kAttitude,     kPose,        kObstacles,  kTracks,        kAlerts,    kAlertAck, kOrders,
-                                      kLidarPackets2, kLidarScan2,   kLidarClock2, kSegments2,  kHealth,        kRunInfo,   kSimTruth};
+inline constexpr std::array kChannels{kLidarBeams, kLidarPackets,  kLidarScan,  kLidarClock,  kLidarOdometry, kLidarNmea, kSegments, kNavRaw,
+                                      kGnssFix,    kAttitude,      kPose,       kObstacles,   kTracks,        kAis,       kAlerts,   kAlertAck,
+                                      kOrders,     kLidarPackets2, kLidarScan2, kLidarClock2, kSegments2,     kHealth,    kRunInfo,  kSimTruth};
 
 /// Whether more than one process may send it: then its messages carry no numbers of one stream.
 constexpr bool HasSeveralPublishers(const Channel& channel) { return channel.publisher == "all" || channel.publisher == "several"; }

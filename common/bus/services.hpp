@@ -54,6 +54,14 @@ inline constexpr std::array kServices{
                "checks the config",
                "tracks, land, alerts, poses, waiting scans",
                {&kObstacles, &kSegments, &kLidarScan, &kPose, &kAlertAck, &kOrders}},
+    ServiceRow{"ais",
+               "ais",
+               "ships of AIS, and which tracks they are",
+               10,
+               "network",
+               "checks the config",
+               "ships, their tracks, poses, waiting scans",
+               {&kNavRaw, &kTracks, &kPose}},
     ServiceRow{"plotter",
                "plotter",
                "targets and alerts for chart plotters, Signal K and NMEA 2000",
@@ -61,7 +69,7 @@ inline constexpr std::array kServices{
                "serial",
                "checks the config",
                "target numbers, what was told to whom",
-               {&kTracks, &kAlerts, &kPose}},
+               {&kTracks, &kAlerts, &kPose, &kAis}},
     ServiceRow{"page",
                "page",
                "the look-out in a browser",
@@ -70,7 +78,7 @@ inline constexpr std::array kServices{
                "checks the config",
                "who watches, the last minutes where no recorder runs",
                {&kLidarScan, &kLidarScan2, &kLidarClock, &kSegments, &kSegments2, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts,
-                &kAlertAck}},
+                &kAlertAck, &kAis}},
     ServiceRow{"recorder", "recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
 
 constexpr bool Publishes(const ServiceRow& service, const Channel& channel) { return channel.publisher == service.role; }

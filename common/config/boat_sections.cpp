@@ -118,14 +118,6 @@ void SetDefaults(const fs::path& file, Message& message) {
   }
 }
 
-// As a full disk or a lost power supply leaves a file: its values are lost, which defaults would hide.
-void RefuseEmpty(const fs::path& file) {
-  std::error_code error;
-  if (fs::is_regular_file(file, error) && fs::file_size(file, error) == 0) {
-    throw ConfigError({file.string() + ":1: file: is empty; if the defaults are meant, remove it"});
-  }
-}
-
 void RefuseBoth(const fs::path& folder, const std::string& file_name, const FieldDescriptor& section) {
   const auto boat = ParseBoat(folder);
   if (!Has(*boat, section)) return;
@@ -197,7 +189,6 @@ void LoadOfBoat(const fs::path& folder, const std::string& file_name, Message& m
   if (section == nullptr || section->message_type() != message.GetDescriptor()) return LoadText(file, message);
   if (IsThere(file)) {
     FaultList faults;
-    faults.Try([&] { RefuseEmpty(file); });
     faults.Try([&] { LoadText(file, message); });
     faults.Try([&] { RefuseBoth(folder, file_name, *section); });
     return faults.ThrowIfAny();

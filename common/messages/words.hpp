@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "lookout/ais_ship_t.hpp"
 #include "lookout/alert_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/health_t.hpp"
@@ -53,6 +54,14 @@ inline constexpr std::array kEncounter{Word{track_t::ENCOUNTER_NONE, "none"},
                                        Word{track_t::ENCOUNTER_CROSSING_STAND_ON, "crossing_stand_on"},
                                        Word{track_t::ENCOUNTER_OVERTAKING, "overtaking"},
                                        Word{track_t::ENCOUNTER_OVERTAKEN, "overtaken"}};
+
+inline constexpr std::array kAisSender{Word{ais_ship_t::SENDER_UNKNOWN, "unknown"}, Word{ais_ship_t::SENDER_CLASS_A, "class_a"},
+                                       Word{ais_ship_t::SENDER_CLASS_B, "class_b"}, Word{ais_ship_t::SENDER_AID, "aid"},
+                                       Word{ais_ship_t::SENDER_BASE, "base"},       Word{ais_ship_t::SENDER_AIRCRAFT, "aircraft"}};
+
+/// What a ship of AIS is to the lidar.
+inline constexpr std::array kAisState{Word{ais_ship_t::STATE_NOT_IN_SIGHT, "not_in_sight"}, Word{ais_ship_t::STATE_TRACKED, "tracked"},
+                                      Word{ais_ship_t::STATE_UNSURE, "unsure"}, Word{ais_ship_t::STATE_AIS_ONLY, "ais_only"}};
 
 inline constexpr std::array kAlertCause{Word{alert_t::CAUSE_GUARD_ZONE, "guard_zone"}, Word{alert_t::CAUSE_CLOSEST_APPROACH, "closest_approach"},
                                         Word{alert_t::CAUSE_WATCH, "watch"}};

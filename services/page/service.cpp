@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "lookout/ais_t.hpp"
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
@@ -65,6 +66,7 @@ Service::Service(bus::Bus& bus, ServiceParts parts) : bus_(bus), parts_(std::mov
   Forward<tracks_t>(bus::kTracks);
   Forward<alerts_t>(bus::kAlerts);
   Forward<alert_ack_t>(bus::kAlertAck);
+  Forward<ais_t>(bus::kAis);
   Forward<health_t>(bus::kHealth);
   Forward<run_info_t>(bus::kRunInfo);
 }

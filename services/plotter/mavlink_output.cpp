@@ -98,7 +98,7 @@ void MavlinkOutput::SendNotices(const Told& told) {
     // In step, so that a late call delays no later one.
     const bool is_late = !heartbeat_sent_ || told.passed - *heartbeat_sent_ >= 2 * kHeartbeatPeriod;
     heartbeat_sent_ = is_late ? told.passed : *heartbeat_sent_ + kHeartbeatPeriod;
-    Send(writer_.Heartbeat(told.somebody_looks ? MavState::kActive : MavState::kCritical));
+    SendSurely(writer_.Heartbeat(told.somebody_looks ? MavState::kActive : MavState::kCritical), "heartbeat");
   }
   TellWhetherSomebodyLooks(told);
   if (!params().mavlink.sends_alerts) return;

@@ -1,6 +1,7 @@
 #include "services/plotter/nmea_output.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "services/plotter/core/nmea0183.hpp"
@@ -105,9 +106,19 @@ void NmeaOutput::SendList(const Told& told) {
   constexpr int kLists = 100;
   const auto standing = notices_.Standing();
   revisions_.Write(standing);
-  if (list_sent_ && told.passed - *list_sent_ < kListPeriod) return;
-  const bool is_well = std::ranges::none_of(told.notices, [](const Notice& notice) { return notice.id == 0 && notice.cause == Cause::kWatch; });
-  if (!Send(Hbt(params().target_talker, kListPeriod, is_well, heartbeat_sequence_) + Alc(params().target_talker, standing, list_sequence_))) return;
+  const bool is_well = std::ranges::none_of(told.notices, [](const Notice& notice) {
+    return notice.cause == Cause::kWatch && (notice.state == NoticeState::kActive || notice.state == NoticeState::kAcknowledged);
+  });
+  if (list_sent_ && told.passed - *list_sent_ < kListPeriod && is_well == told_well_) return;
+  told_well_ = is_well;
+  SendSurely(Hbt(params().target_talker, kListPeriod, is_well, heartbeat_sequence_), "HBT");
+  // Each sentence by itself: a slow port has no room for all at once.
+  const auto list = Alc(params().target_talker, standing, list_sequence_);
+  for (std::size_t begin = 0, number = 1; begin < list.size(); ++number) {
+    const auto end = list.find('\n', begin) + 1;
+    SendSurely(list.substr(begin, end - begin), "ALC " + std::to_string(number));
+    begin = end;
+  }
   list_sent_ = told.passed;
   heartbeat_sequence_ = (heartbeat_sequence_ + 1) % kHeartbeats;
   list_sequence_ = (list_sequence_ + 1) % kLists;
@@ -142,10 +153,10 @@ Commands NmeaOutput::Obey(const AlertCommand& command, const Told& told) {
   }
   const char state = meant == nullptr ? 'N' : AlfStateOf(*meant);
   if (command.kind == AlertCommand::Kind::kTellAgain && state != 'N') {
-    notices_.TellAgain(RaisedKeyOf(*meant));
+    notices_.TellAgain(*meant);
   } else if (command.kind == AlertCommand::Kind::kAcknowledge && params().takes_acknowledgements && (state == 'V' || state == 'S' || state == 'U')) {
     commands.acknowledged = {KeyOf(*meant)};
-  } else if (command.kind == AlertCommand::Kind::kSilence && params().takes_acknowledgements && (state == 'V' || state == 'S')) {
+  } else if (command.kind == AlertCommand::Kind::kSilence && params().takes_acknowledgements && (state == 'V' || state == 'S') && meant->id > 0) {
     commands.silences = true;
   } else {
     Refuse(command, told);

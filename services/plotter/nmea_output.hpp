@@ -38,12 +38,13 @@ class NmeaOutput : public Output {
   void Refuse(const AlertCommand& command, const Told& told);
 
   TargetSchedule targets_;
-  NoticeSchedule notices_;
+  NoticeSchedule notices_{NoticeSchedule::Identity::kId};
   RevisionFile revisions_;
   int sequence_ = 0;            // of ALF
   int list_sequence_ = 0;       // of ALC
   int heartbeat_sequence_ = 0;  // of HBT
   std::optional<std::chrono::microseconds> list_sent_;
+  bool told_well_ = true;  // by HBT
   std::optional<std::chrono::microseconds> refused_;
   std::optional<std::chrono::microseconds> own_ship_sent_;
   std::optional<std::chrono::microseconds> repeat_sent_;

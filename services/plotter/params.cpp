@@ -339,6 +339,7 @@ Params LoadParams(const fs::path& config_folder) {
   const auto outputs = faults.Take([&] { return message ? OutputsReader(config_folder, *message).Read() : std::vector<OutputParams>(); });
   faults.ThrowIfAny();
   params.takes_tentative = message->takes_tentative();
+  params.sends_ais_targets = message->sends_ais_targets();
   params.target_period = ToMicroseconds(message->target_period_s());
   params.own_ship_period = ToMicroseconds(message->own_ship_period_s());
   params.number_quarantine = ToMicroseconds(message->number_quarantine_s());

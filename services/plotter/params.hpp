@@ -57,6 +57,7 @@ struct OutputParams {
 struct Params {
   std::string boat;  // its name, as in boat.txtpb
   bool takes_tentative = false;
+  bool sends_ais_targets = true;  // such as AIS tells of
   std::chrono::microseconds target_period{2'500'000};
   std::chrono::microseconds own_ship_period{1'000'000};
   std::chrono::microseconds number_quarantine{60'000'000};

@@ -56,11 +56,11 @@ void RevisionFile::Write(std::span<const ToldNotice> notices) {
                         static_cast<int>(notice.level), static_cast<int>(notice.state), static_cast<int>(notice.sound), notice.escalation, revision);
   }
   if (text == written_) return;
-  written_ = text;
   try {
     io::OutputFile out(file_, {.force = true, .inputs = {}, .tell = [](const std::string&) {}});
     out.Write(text);
     out.Commit();
+    written_ = text;
   } catch (const std::runtime_error&) {
     return;  // the next process begins with 1, then
   }

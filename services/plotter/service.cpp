@@ -31,6 +31,7 @@ Service::Service(bus::Bus& bus, const Params& params, std::vector<std::unique_pt
   bus::Subscribe<tracks_t>(bus_, bus::kTracks, [this](const tracks_t& message) { OnTracks(message); });
   bus::Subscribe<alerts_t>(bus_, bus::kAlerts, [this](const alerts_t& message) { OnAlerts(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
+  bus::Subscribe<ais_t>(bus_, bus::kAis, [this](const ais_t& message) { OnAis(message); });
   if (params_.surroundings) SubscribeSurroundings();
 }
 
@@ -70,7 +71,7 @@ Told Service::ToldNow() const {
           .numbers = numbers_,
           .notices = notices_,
           .host_time = now_.value_or(Utime()),
-          .somebody_looks = MayTellLook() && IsFresh(look_told_)};
+          .somebody_looks = MayTellLook() && IsFresh(look_told_) && (!sight_lost_ || IsFresh(sight_lost_))};
 }
 
 void Service::TellLook(std::span<const tracks_t> parts) {
@@ -143,9 +144,16 @@ void Service::ComposeTargets() {
     if (track.state == TargetState::kLost || (track.state == TargetState::kAcquiring && !params_.takes_tentative)) continue;
     Target& target = targets.emplace_back(track);
     target.position = Propagated(track.position, track.velocity_east_mps, track.velocity_north_mps, ahead_s);
-    if (const auto name = names_.find(track.id); name != names_.end()) target.given_name = name->second;
+    const auto* ship = ShipOf(track.id);
+    if (const auto name = names_.find(track.id); name != names_.end()) {
+      target.given_name = name->second;
+    } else if (ship != nullptr) {
+      target.given_name = *ship;
+    }
     if (target.tcpa_s > 0.0) target.tcpa_s = std::max(0.0, target.tcpa_s - ahead_s);
     if (const auto level = levels.find(track.id); level != levels.end() && track.id != 0) target.level = level->second;
+    // The receiver has her by AIS. What an alert tells of must be there all the same.
+    if (ship != nullptr && !params_.sends_ais_targets && target.level == Level::kNone) targets.pop_back();
   }
   std::set<std::int64_t> ids;
   for (const auto& target : targets) ids.insert(target.id);
@@ -173,6 +181,22 @@ void Service::TellNotices() {
   notices_told_ = passed_.passed();
   ComposeNotices();
   for (const auto& output : outputs_) output->TellNotices(ToldNow());
+}
+
+void Service::OnAis(const ais_t& message) {
+  auto ships = ToShipNames(message);
+  if (!ships) {
+    ++counts_["ais_refused"];
+    return;
+  }
+  ships_ = std::move(ships);
+}
+
+// Her name, where AIS of these tracks or of those shortly before says which ship the track is.
+const std::string* Service::ShipOf(std::int64_t track_id) const {
+  if (!ships_ || ships_->tracks_begin != begin_ || std::chrono::abs(tracks_time_ - ships_->time) > kMostApart) return nullptr;
+  const auto found = ships_->name_of_track.find(track_id);
+  return found == ships_->name_of_track.end() ? nullptr : &found->second;
 }
 
 void Service::OnPose(const pose_t& message) {
@@ -236,6 +260,7 @@ void Service::AdvanceTo(Utime host_time) {
   if (is_first) {
     for (auto* seen : {&tracks_seen_, &alerts_seen_, &pose_seen_}) *seen = seen->value_or(passed_.passed());
   }
+  if (!MayTellLook()) sight_lost_.reset();
   const bool is_watched = IsFresh(alerts_seen_);
   if (was_watched_ && !is_watched) ++counts_["times_unwatched"];
   was_watched_ = is_watched;

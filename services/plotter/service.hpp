@@ -49,7 +49,9 @@ class Service {
   void OnTracks(const tracks_t& message);
   void OnAlerts(const alerts_t& message);
   void OnPose(const pose_t& message);
+  void OnAis(const ais_t& message);
 
+  const std::string* ShipOf(std::int64_t track_id) const;
   void UseTracks(std::span<const tracks_t> parts);
   void SubscribeSurroundings();
   void TellLook(std::span<const tracks_t> parts);
@@ -67,8 +69,9 @@ class Service {
   bool TellsTargets() const;
   void StopTargets();
 
-  static constexpr auto kCountNames = std::to_array<std::string_view>({"tracks_incomplete", "tracks_inconsistent", "acks_sent", "acks_of_no_alert",
-                                                                       "silences_sent", "times_unwatched", "runs_begun", "names_refused"});
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"tracks_incomplete", "tracks_inconsistent", "acks_sent", "acks_of_no_alert", "silences_sent",
+                                       "times_unwatched", "runs_begun", "names_refused", "ais_refused"});
 
   bus::Bus& bus_;
   Params params_;
@@ -78,12 +81,13 @@ class Service {
   TargetNumbers numbers_;
   OwnShip own_;
   bool has_pose_ = false;
-  std::vector<Target> tracks_;   // of the last TRACKS, by id
-  std::vector<Target> targets_;  // of them: those that are told, as of now
-  Utime tracks_time_;            // to which they are propagated
-  std::optional<Utime> begin_;   // of the tracker's process
-  std::vector<Notice> alerts_;   // of the last ALERTS
-  GivenNames names_;             // the same
+  std::vector<Target> tracks_;      // of the last TRACKS, by id
+  std::vector<Target> targets_;     // of them: those that are told, as of now
+  Utime tracks_time_;               // to which they are propagated
+  std::optional<Utime> begin_;      // of the tracker's process
+  std::vector<Notice> alerts_;      // of the last ALERTS
+  GivenNames names_;                // the same
+  std::optional<ShipNames> ships_;  // of the last AIS
   std::optional<Notice> own_notice_;
   std::vector<Notice> notices_;  // alerts_ and own_notice_
   bool are_told_ = false;        // targets

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/bus/channels.hpp"
@@ -219,8 +220,10 @@ bool Surroundings::AddReturns(Lidar& lidar, const Found& found, const std::vecto
   return is_known;
 }
 
-// Of a structure that is seen the returns are nearer to the truth: its outline bridges bays. The boat is in no outline that it is not seen in.
-void Surroundings::AddTracks(std::span<const tracks_t> tracks, const Pose& now, Look& look) {
+// Of a structure whose returns count they are nearer to the truth: its outline bridges bays. The boat is in no outline that it is not seen in.
+void Surroundings::AddTracks(std::span<const tracks_t> tracks, const Pose& now, bool has_returns, Look& look) {
+  // Segments of the second lidar have greater ids.
+  const auto is_of_first = [](std::int32_t id) { return id <= std::numeric_limits<std::int16_t>::max(); };
   const auto& head = tracks.front();
   if (!Datum{head.datum_latitude_deg, head.datum_longitude_deg, head.datum_ellipsoid_height_m}.IsSameAs(now.datum)) return;
   const double ahead_s = ToSeconds(now.time - Utime(microseconds(head.end_utime_us)));
@@ -228,12 +231,17 @@ void Surroundings::AddTracks(std::span<const tracks_t> tracks, const Pose& now, 
   for (const auto& part : tracks) {
     for (const auto& track : part.tracks) {
       if (!IsThere(track, params_.takes_tentative)) continue;
-      if (track.kind == track_t::KIND_STRUCTURE && track.num_segments > 0) continue;
+      const bool is_by_returns = track.kind == track_t::KIND_STRUCTURE && has_returns && std::ranges::any_of(track.segment_ids, is_of_first);
+      if (is_by_returns) continue;
       auto outline_m = OutlineAfter(track, ahead_s);
       if (!outline_m) {
         ++counts_["outlines_refused"];
-        continue;
+        track_t middle = track;
+        middle.outline_east_m.clear();
+        middle.outline_north_m.clear();
+        outline_m = OutlineAfter(middle, ahead_s);
       }
+      if (!outline_m) continue;
       for (auto& corner_m : *outline_m) {
         corner_m = vessel_from_map * (Eigen::Vector3d(corner_m.x(), corner_m.y(), now.position_map_m.z()) - now.position_map_m);
       }
@@ -279,7 +287,7 @@ Look Surroundings::LookAt(std::span<const tracks_t> tracks) {
     if (AddReturns(lidars_[i], found, is_taken, now, look)) sights[i] = &*lidars_[i].sight;
   }
   if (now != nullptr) {
-    AddTracks(tracks, *now, look);
+    AddTracks(tracks, *now, sights.front() != nullptr, look);
     AddLand(tracks.front(), *now, look);
   }
   // Without the scan that TRACKS are of nobody knows what else is there.

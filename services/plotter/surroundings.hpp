@@ -77,7 +77,7 @@ class Surroundings {
   bool AddReturns(Lidar& lidar, const Found& found, const std::vector<bool>& is_taken, const Pose* now, Look& look);
   /// @return whether the own motion within it is known
   bool AddPart(Lidar& lidar, const lidar_scan_t& scan, const segments_t& labels, const std::vector<bool>& is_taken, const Pose* now, Look& look);
-  void AddTracks(std::span<const tracks_t> tracks, const Pose& now, Look& look);
+  void AddTracks(std::span<const tracks_t> tracks, const Pose& now, bool has_returns, Look& look);
   void AddLand(const tracks_t& tracks, const Pose& now, Look& look);
 
   SurroundingsParams params_;

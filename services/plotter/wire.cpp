@@ -21,6 +21,7 @@ constexpr double kMostSpeedMps = 1000.0;
 constexpr double kMostLengthM = 1e5;
 constexpr double kMostTcpaS = 1e6;
 constexpr std::size_t kMostTextBytes = 1000;
+constexpr std::size_t kMmsiDigits = 9;
 constexpr std::int64_t kMostAlertId = 1'000'000'000'000'000;
 
 bool IsWithin(double value, double min, double max) { return value >= min && value <= max; }  // NaN is not
@@ -159,6 +160,20 @@ std::optional<GivenNames> ToGivenNames(const alerts_t& message) {
     const auto track_id = message.named_track_id[i];
     if (!lookout::IsName(name) || (!names.empty() && track_id <= names.rbegin()->first)) return std::nullopt;
     names.emplace_hint(names.end(), track_id, name);
+  }
+  return names;
+}
+
+std::optional<ShipNames> ToShipNames(const ais_t& message) {
+  const auto time = UtimeFromWire(message.end_utime_us);
+  const auto begin = UtimeFromWire(message.tracks_begin_utime_us);
+  if (!time || !begin) return std::nullopt;
+  ShipNames names{*time, *begin, {}};
+  for (const auto& ship : message.ships) {
+    if (ship.state != ais_ship_t::STATE_TRACKED) continue;
+    auto number = std::to_string(ship.mmsi);
+    number.insert(0, number.size() < kMmsiDigits ? kMmsiDigits - number.size() : 0, '0');
+    names.name_of_track[ship.track_id] = lookout::IsName(ship.name) ? ship.name : "MMSI " + number;
   }
   return names;
 }

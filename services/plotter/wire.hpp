@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/messages/checks.hpp"
+#include "lookout/ais_t.hpp"
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/alerts_t.hpp"
 #include "lookout/order_t.hpp"
@@ -51,6 +52,15 @@ std::variant<TracksPart, Fault> ToTracksPart(const tracks_t& message);
 std::variant<std::vector<Notice>, Fault> ToNotices(const alerts_t& message);
 /// nullopt: one of them is no name, or ids of tracks do not increase.
 std::optional<GivenNames> ToGivenNames(const alerts_t& message);
+
+/// Ships of AIS that are tracks, for sure.
+struct ShipNames {
+  Utime time;                // as TracksPart::time
+  Utime tracks_begin;        // as TracksPart::begin
+  GivenNames name_of_track;  // her name, else "MMSI 211000001"
+};
+/// nullopt: a time does not exist.
+std::optional<ShipNames> ToShipNames(const ais_t& message);
 
 /// @param message  one that messages::ToPose accepts
 OwnShip ToOwnShip(const pose_t& message);

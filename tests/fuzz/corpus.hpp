@@ -55,4 +55,7 @@ void WriteOuster(const Folder& folder);
 /// Texts that lookout-archive reads.
 void WriteArchiveTexts(const Folder& folder);
 
+// In corpus_ais.cpp
+void WriteAis(const Folder& folder);
+
 }  // namespace lookout::fuzz

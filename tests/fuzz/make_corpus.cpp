@@ -458,6 +458,7 @@ int main(int argc, char** argv) try {
   WriteHesaiPackets(Folder(root / "fuzz_hesai"));
   WriteVelodynePackets(Folder(root / "fuzz_velodyne"));
   WriteOuster(Folder(root / "fuzz_ouster"));
+  WriteAis(Folder(root / "fuzz_ais"));
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
   WriteMotions(Folder(root / "fuzz_odometry_line"));
   WriteAnswers(Folder(root / "fuzz_plotter"));

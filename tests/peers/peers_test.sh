@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# One trial of the plotter with programs of others, in a network namespace of its own.
-#   peers_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (sentences, n2k, mavlink, signalk or gpsd)
+# One trial of the plotter, or of the decoder of AIS, with programs of others, in a network namespace of its own.
+#   peers_test.sh TRIAL SOURCE_FOLDER BUILD_FOLDER     (sentences, n2k, mavlink, signalk, gpsd or gpsdecode)
 # Packages of npm are installed into the build folder, as package-lock.json has them: without the network the trial is skipped.
 set -euo pipefail
 trial=$1
@@ -39,6 +39,12 @@ case $trial in
     [ -x $gpsd ] || gpsd=$source_folder/build/gpsd/usr/sbin/gpsd
     [ -x "$gpsd" ] || skip "there is no gpsd"
     export LOOKOUT_GPSD=$gpsd
+    ;;
+  gpsdecode)
+    gpsdecode=/usr/bin/gpsdecode
+    [ -x $gpsdecode ] || gpsdecode=$source_folder/build/gpsd/usr/bin/gpsdecode
+    [ -x "$gpsdecode" ] || skip "there is no gpsdecode"
+    export LOOKOUT_GPSDECODE=$gpsdecode
     ;;
   *) echo "unknown trial: $trial" >&2; exit 2 ;;
 esac

@@ -80,7 +80,7 @@ message("start order: ${start_order}")
 TEXT
 units() { cmake -DSOURCE="$source_folder" -DWORK="$work" -P "$work/units.cmake" 2>&1; }
 sed 's/^    ServiceRow{"recorder"/    ServiceRow{"fuser", "fuser", "obstacles of two lidars", 12,\n               "network", "none", "none", {\&kObstacles}},\n&/' "$source_folder/common/bus/services.hpp" >"$work/services.hpp"
-grep -qxF 'start order: recorder;fuser;page;plotter;tracker;georeferencer;navigator;odometer;segmenter;lidar' <(units) || { units; fail "the start order with a row more"; }
+grep -qxF 'start order: recorder;fuser;page;plotter;ais;tracker;georeferencer;navigator;odometer;segmenter;lidar' <(units) || { units; fail "the start order with a row more"; }
 grep -qxF 'Description=Lookout fuser: obstacles of two lidars' "$work/units/lookout-fuser.service" || fail "a row more has no unit"
 grep -qxF 'WatchdogSec=12s' "$work/units/lookout-fuser.service" || fail "the watchdog of a row more"
 grep -q 'After=.* lookout-fuser.service' "$work/units/lookout-georeferencer.service" || fail "a row more is not started before what it reads from"
@@ -93,7 +93,7 @@ grep -q 'Wants=.* lookout-lidar_2.service' "$work/units/lookout.target" || fail 
 grep -q 'After=.* lookout-segmenter.service' "$work/units/lookout-lidar_2.service" || fail "the second lidar starts before what reads it"
 sed -i 's/"obstacles of two lidars", 12/"obstacles of two lidars", 12.5/' "$work/services.hpp"
 if units >"$work/refused.txt"; then fail "a wrong row is accepted"; fi
-grep -q '9 of 10 rows' "$work/refused.txt" || { cat "$work/refused.txt"; fail "a wrong row is not told"; }
+grep -q '10 of 11 rows' "$work/refused.txt" || { cat "$work/refused.txt"; fail "a wrong row is not told"; }
 
 up=$build_folder/bin/lookout-up
 config=$work/config
@@ -102,7 +102,7 @@ cp -r "$source_folder/config/demo" "$config"
 "$up" --version | grep -q '^lookout-up [0-9]' || fail "--version"
 "$up" --config "$config" --check >"$work/check.txt" || fail "--check of the demo"
 mapfile -t names < <("$up" --list)
-[ "${names[*]}" = "recorder page plotter tracker georeferencer navigator odometer segmenter lidar" ] || fail "--list: ${names[*]}"
+[ "${names[*]}" = "recorder page plotter ais tracker georeferencer navigator odometer segmenter lidar" ] || fail "--list: ${names[*]}"
 for name in "${names[@]}"; do
   grep -q "^$name: ok\$" "$work/check.txt" || fail "--check does not tell of $name"
 done

@@ -149,7 +149,7 @@ done <"$work/touched.txt"
 
 # --- What follows ---
 cmake --preset release >"$work/configure.txt" 2>&1 || { tail -n 30 "$work/configure.txt"; fail "the copy cannot be configured"; }
-[[ "$(build/release/bin/lookout-up --list | tr '\n' ' ')" == *"plotter echo tracker "* ]] || fail "it does not start where its row says: $(build/release/bin/lookout-up --list)"
+[[ "$(build/release/bin/lookout-up --list | tr '\n' ' ')" == *"plotter echo ais tracker "* ]] || fail "it does not start where its row says: $(build/release/bin/lookout-up --list)"
 grep -q '^ExecStart=.*lookout-echo ' build/release/deploy/systemd/lookout-echo.service || fail "it has no unit"
 for made in tools/doctor/config_checks.cpp:echo::LoadParams common/schemas.cpp:Echo::descriptor generated/tests/support/wire_types.hpp:'call(echo_t{})' \
   generated/tests/support/wire_types.hpp:'message.pose_seq.resize(2)' generated/tools/diff/fields.hpp:'"pose_seq"' common/schema.cpp:echo_t; do

@@ -11,19 +11,24 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/log_file.hpp"
+#include "lookout/ais_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "tests/support/live_bus.hpp"
 #include "tests/support/live_test.hpp"
+#include "tests/support/socket.hpp"
+#include "tests/unit/ais/encoder.hpp"
 #include "tools/log/watch_alerts.hpp"
 
 namespace lookout::system_test {
@@ -35,7 +40,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 // Sources end first, so that what they send at their end still finds its takers.
-const std::vector<std::string> kFromSourceToLog{"lidar", "odometer", "navigator", "segmenter", "georeferencer", "tracker", "recorder"};
+const std::vector<std::string> kFromSourceToLog{"lidar", "odometer", "navigator", "segmenter", "georeferencer", "tracker", "ais", "recorder"};
 
 int DataSeconds() {
   const char* text = std::getenv("LOOKOUT_PROOF_SECONDS");
@@ -84,7 +89,8 @@ void ExpectSameMessages(const Payloads& one, const Payloads& other, const std::s
     // Nobody was there to acknowledge, and the boat has one lidar.
     if (!channel.is_replayed || bus::HasSeveralPublishers(channel) || bus::IsOfSecondLidar(channel)) continue;
     const std::string name(channel.name);
-    if (silent.contains(name)) {
+    // Where no AIS was heard, nothing is said of it.
+    if (silent.contains(name) || (name == "AIS" && Count(one, name) == 0)) {
       EXPECT_EQ(Count(one, name) + Count(other, name), 0) << name;
       continue;
     }
@@ -93,6 +99,35 @@ void ExpectSameMessages(const Payloads& one, const Payloads& other, const std::s
     EXPECT_TRUE(other.contains(name) && one.at(name) == other.at(name)) << name << " differs";
   }
 }
+
+// A receiver of AIS beside the boat's other sensors: the own transponder, and ships on the lake of the simulator.
+class AisReceiver {
+ private:
+  static void Send(const std::stop_token& is_over) {
+    const Socket socket(SOCK_DGRAM);
+    const auto navigator = Ipv4("127.0.0.1", 10110);
+    const auto send = [&](const std::vector<std::string>& lines) {
+      for (const auto& line : lines) {
+        const auto text = line + "\r\n";
+        EXPECT_TRUE(socket.SendTo(navigator, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
+      }
+    };
+    for (int i = 0; !is_over.stop_requested(); ++i) {
+      const auto now = std::chrono::floor<seconds>(std::chrono::system_clock::now()).time_since_epoch().count();
+      ais::test::Position position{
+          .latitude_deg = 43.6333, .longitude_deg = -72.15, .speed_kn = 0.0, .course_deg = 90.0, .second = static_cast<int>(now % 60)};
+      send(ais::test::Lines(ais::test::ClassB(211000000, position), "AIVDO"));
+      for (std::uint32_t ship = 1; ship <= 5; ++ship) {
+        position.latitude_deg += 0.0001;
+        send(ais::test::Lines(ais::test::ClassA(211000000 + ship, position)));
+        send(ais::test::Lines(ais::test::StaticA(211000000 + ship, "PROOF " + std::to_string(ship), "CALL", 70, {5, 5, 2, 2}), "AIVDM", i % 10));
+      }
+      std::this_thread::sleep_for(milliseconds(210));
+    }
+  }
+
+  std::jthread thread_{Send};
+};
 
 class Proof : public LiveTest {
  protected:
@@ -158,12 +193,15 @@ class Proof : public LiveTest {
       ReplaceIn("config/navigator.txtpb", "use_lidar_nmea: true", "use_lidar_nmea: false");
       WriteFile("config/navigator.txtpb", ReadFile("config/navigator.txtpb") + "nmea_port: 10111\n");
     }
-    Start({"recorder", "tracker", "georeferencer", "segmenter"});
+    Start({"recorder", "ais", "tracker", "georeferencer", "segmenter"});
     Start({"navigator", "odometer", "lidar"});  // nobody misses their start marks
+    std::optional<AisReceiver> receiver;
+    if (has_navigation) receiver.emplace();
     const auto sim = RunProgram(
         {Bin("sim"), "--config", sensors, "--scene", "lake", "--seed", "3", "--seconds", std::to_string(DataSeconds()), "--udp", "127.0.0.1"},
         "sim.out");
     EXPECT_EQ(sim.exit_code, 0) << sim.output;
+    receiver.reset();
     return StopAndRead();
   }
 
@@ -172,7 +210,7 @@ class Proof : public LiveTest {
     EnterRun(run, false);
     WriteFile("config/tracker.txtpb", ReadFile("config/tracker.txtpb") + "wait_timeout_s: 20\n");
     ReplaceIn("config/georeferencer.txtpb", "pose_timeout_s: 0.5", "pose_timeout_s: 20");
-    Start({"recorder", "tracker", "georeferencer", "segmenter"});
+    Start({"recorder", "ais", "tracker", "georeferencer", "segmenter"});
     Start({"navigator", "odometer", "lidar"});
     Child sim(
         {Bin("sim"), "--config", "config", "--scene", "lake", "--seed", "3", "--seconds", std::to_string(DataSeconds() + 2), "--udp", "127.0.0.1"},
@@ -231,6 +269,11 @@ TEST_F(Proof, WhatRanLiveComputesAgainToTheSameBytes) {
   ASSERT_FALSE(HasFailure());
   EXPECT_GE(Count(live, "LIDAR_SCAN"), 10 * DataSeconds() - 2);
   EXPECT_GE(Count(live, "RUN_INFO"), 1);
+  ASSERT_GT(Count(live, "AIS"), 10);
+  const auto ships = bus::Decode<ais_t>(live.at("AIS").back()).value();
+  EXPECT_EQ(ships.status, std::int32_t{ais_t::STATUS_OK});
+  EXPECT_EQ(ships.num_ships, 5);
+  EXPECT_EQ(ships.own_mmsi, 211000000);
 
   const auto replay = RunProgram({Bin("replay"), "--config", "config", "--in", log.string(), "--out", "again"}, "replay.out");
   ASSERT_EQ(replay.exit_code, 0) << replay.output;
@@ -242,7 +285,7 @@ TEST_F(Proof, WhatRanLiveComputesAgainToTheSameBytes) {
   const auto part =
       RunProgram({Bin("replay"), "--config", "config", "--in", log.string(), "--out", "part", "--from", "SEGMENTS", "--from", "POSE"}, "part.out");
   ASSERT_EQ(part.exit_code, 0) << part.output;
-  for (const auto* name : {"OBSTACLES", "TRACKS", "ALERTS"}) EXPECT_TRUE(ReadLog("part").at(name) == live.at(name)) << name;
+  for (const auto* name : {"OBSTACLES", "TRACKS", "ALERTS", "AIS"}) EXPECT_TRUE(ReadLog("part").at(name) == live.at(name)) << name;
 
   for (const std::string speed : {"1", "10"}) {
     SCOPED_TRACE("lcm-logplayer at x" + speed);
@@ -295,7 +338,7 @@ class ProofOfARestart : public Proof, public ::testing::WithParamInterface<std::
 TEST_P(ProofOfARestart, IsReplayedSo) {
   const auto& [victim, signal] = GetParam();
   const auto live = WithoutLoss([&, &who = victim, by = signal](const std::string& attempt) { return RunWithARestart(attempt, who, by); },
-                                {"recorder lost TRACKS", "recorder lost ALERTS"});  // that nobody sent
+                                {"recorder lost TRACKS", "recorder lost ALERTS", "ais lost TRACKS"});  // that nobody sent
   ASSERT_FALSE(HasFailure());
   if (victim == "tracker") {
     EXPECT_EQ(NumBegins(live), 2U);

@@ -73,10 +73,11 @@ class Watch {
 
 // The channel by which a process shows that it works again; the recorder shows it by a log, page and plotter by their HEALTH alone.
 const bus::Channel& OutputOf(const std::string& process) {
-  static const std::map<std::string, const bus::Channel*> kOutputs{
-      {"recorder", &bus::kObstacles},      {"page", &bus::kHealth},        {"plotter", &bus::kHealth},         {"tracker", &bus::kAlerts},
-      {"georeferencer", &bus::kObstacles}, {"segmenter", &bus::kSegments}, {"odometer", &bus::kLidarOdometry}, {"navigator", &bus::kPose},
-      {"lidar", &bus::kLidarScan}};
+  static const std::map<std::string, const bus::Channel*> kOutputs{{"recorder", &bus::kObstacles}, {"page", &bus::kHealth},
+                                                                   {"plotter", &bus::kHealth},     {"ais", &bus::kHealth},
+                                                                   {"tracker", &bus::kAlerts},     {"georeferencer", &bus::kObstacles},
+                                                                   {"segmenter", &bus::kSegments}, {"odometer", &bus::kLidarOdometry},
+                                                                   {"navigator", &bus::kPose},     {"lidar", &bus::kLidarScan}};
   return *kOutputs.at(process);
 }
 

@@ -44,7 +44,7 @@ cmp boat/boat.txtpb again/boat.txtpb || fail "the same answers give another file
 if grep -q 'warning' said.txt; then fail "lookout-up --check warns"; fi
 "$bin/lookout-doctor" --config boat --check >doctor.txt 2>said.txt || fail "lookout-doctor --check"
 "$bin/lookout-up" --config boat --check --values >values.txt 2>said.txt || fail "--values"
-for file in boat lidar segmenter odometer navigator georeferencer tracker plotter page recorder; do
+for file in boat lidar segmenter odometer navigator georeferencer tracker ais plotter page recorder; do
   [ "$(grep -cx "# $file.txtpb" values.txt)" -eq 1 ] || fail "--values does not tell once of $file.txtpb"
   [ "$(grep -cx "# $file.txtpb" doctor.txt)" -eq 1 ] || fail "the doctor does not tell once of $file.txtpb"
 done

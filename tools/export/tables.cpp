@@ -12,6 +12,7 @@
 #include "common/core/angles.hpp"
 #include "common/messages/returns.hpp"
 #include "common/messages/words.hpp"
+#include "lookout/ais_t.hpp"
 #include "lookout/alerts_t.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
@@ -126,6 +127,19 @@ void Append(const tracks_t& message, const Near* near, std::string& text) {
               Degrees(track.length_bearing_rad), Metres(track.top_above_water_m), Share(track.seen_share), track.num_seen, track.num_looks,
               Fixed{track.mean_returns, 1}, Metres(track.range_m), Direction{track.bearing_rad}, Metres(track.distance_m),
               Share(track.cpa_probability), words::WordOf(words::kEncounter, track.encounter), Degrees(track.bearing_drift_radps));
+  }
+}
+
+void Append(const ais_t& message, std::string& text) {
+  for (const auto& ship : message.ships) {
+    AppendRow(text, message.end_utime_us, ship.mmsi, ship.name, ship.call_sign, words::WordOf(words::kAisState, ship.state), ship.track_id,
+              Share(ship.track_probability), words::WordOf(words::kAisSender, ship.sender), ship.ship_type, GeodeticDegrees(ship.latitude_deg),
+              GeodeticDegrees(ship.longitude_deg), Metres(ship.position_map_m[0]), Metres(ship.position_map_m[1]), Shortest{ship.covariance_m2[0]},
+              Shortest{ship.covariance_m2[1]}, Shortest{ship.covariance_m2[2]}, Metres(ship.range_m), Direction{ship.bearing_rad},
+              Metres(ship.report_speed_mps), Direction{ship.report_course_rad}, Direction{ship.heading_rad}, CountOrEmpty{ship.navigational_status},
+              Metres(ship.bow_m), Metres(ship.stern_m), Metres(ship.port_m), Metres(ship.starboard_m), static_cast<int>(ship.has_reference),
+              static_cast<int>(ship.is_virtual), static_cast<int>(ship.is_accurate), ship.report_utime_us,
+              static_cast<int>(ship.is_report_time_known), ship.arrival_utime_us, message.scan_seq);
   }
 }
 
@@ -244,6 +258,11 @@ const std::array kTables{
           "length_bearing_deg,top_above_water_m,seen_share,num_seen,num_looks,mean_returns,range_m,bearing_deg,distance_m,cpa_probability,encounter,"
           "bearing_drift_degps",
           bus::kTracks, AppendPlaced<tracks_t>},
+    Table{"ais",
+          "utime_us,mmsi,name,call_sign,state,track_id,track_probability,sender,ship_type,latitude_deg,longitude_deg,east_m,north_m,cov_ee_m2,"
+          "cov_en_m2,cov_nn_m2,range_m,bearing_deg,speed_mps,course_deg,heading_deg,navigational_status,bow_m,stern_m,port_m,starboard_m,"
+          "has_reference,is_virtual,is_accurate,report_utime_us,is_report_time_known,arrival_utime_us,scan_seq",
+          bus::kAis, AppendMessage<ais_t>},
     Table{"alerts",
           "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text,"
           "name,in_zone,comes_near,time_left_s,latitude_deg,longitude_deg,sight,seen_utime_us,end,sounds",

@@ -57,11 +57,15 @@ void LogMaker::Release(Utime time, const ImportItem& item) {
   }
   switch (item.kind) {
     case ImportItem::Kind::kPacket:
-      if (const auto bundle = bundler_.Add(time, data_port_, item.bytes)) WriteBundle(*bundle);
+    case ImportItem::Kind::kPositionPacket: {
+      // Older drivers of Ouster send a byte more than the packet has.
+      const bool is_data = item.kind == ImportItem::Kind::kPacket;
+      const auto fits = [&](std::size_t size) { return is_data ? bundler_.IsDataSize(size) : bundler_.IsPositionSize(size); };
+      const auto size = item.bytes.size();
+      const auto payload = Bytes(item.bytes).first(size > 0 && !fits(size) && fits(size - 1) ? size - 1 : size);
+      if (const auto bundle = bundler_.Add(time, is_data ? data_port_ : position_port_, payload)) WriteBundle(*bundle);
       return;
-    case ImportItem::Kind::kPositionPacket:
-      if (const auto bundle = bundler_.Add(time, position_port_, item.bytes)) WriteBundle(*bundle);
-      return;
+    }
     case ImportItem::Kind::kSentence:
       return WriteNavigation(sequencer_.OnLines(time, {item.sentence}, item.source));
     case ImportItem::Kind::kImu:

@@ -3,6 +3,8 @@
 #include <list>
 #include <map>
 
+#include "services/ais/params.hpp"
+#include "services/ais/service.hpp"
 #include "services/georeferencer/params.hpp"
 #include "services/georeferencer/service.hpp"
 #include "services/lidar/params.hpp"
@@ -163,6 +165,22 @@ class TrackerStage final : public Stage {
   tracker::Service service_;
 };
 
+class AisStage final : public Stage {
+ public:
+  AisStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& /*input*/) : service_(bus, ais::LoadParams(config_folder)) {}
+
+  void Finish(Utime /*time*/) override { service_.Finish(); }
+  // It reads no marks. Where the run was cut, scans that wait are left out.
+  std::int64_t FinishLogs(Utime /*time*/, bool is_whole) override {
+    if (is_whole) service_.Finish();
+    return 0;
+  }
+  HealthReport Report() const override { return service_.Report(); }
+
+ private:
+  ais::Service service_;
+};
+
 template <typename S>
 std::unique_ptr<Stage> Make(bus::Bus& bus, const fs::path& config_folder, const StageInput& input) {
   return std::make_unique<S>(bus, config_folder, input);
@@ -182,7 +200,8 @@ const std::vector<StageFactory>& StageFactories() {
       {"odometer", [](const fs::path& folder) { odometer::LoadParams(folder); }, Make<PlainStage<odometer::Service, odometer::LoadParams>>},
       {"navigator", [](const fs::path& folder) { navigator::LoadParams(folder); }, Make<NavigatorStage>},
       {"georeferencer", [](const fs::path& folder) { georeferencer::LoadParams(folder); }, Make<GeoreferencerStage>},
-      {"tracker", [](const fs::path& folder) { tracker::LoadParams(folder); }, Make<TrackerStage>}};
+      {"tracker", [](const fs::path& folder) { tracker::LoadParams(folder); }, Make<TrackerStage>},
+      {"ais", [](const fs::path& folder) { ais::LoadParams(folder); }, Make<AisStage>}};
   return kFactories;
 }
 

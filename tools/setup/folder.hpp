@@ -18,8 +18,8 @@ void CheckPlace(const std::filesystem::path& folder, bool force);
 /// FILE.old.2 and so on.
 ///
 /// @return the kept files
-/// @throws config::ConfigError where the boat would be wrong; std::runtime_error as CheckPlace, and where it cannot be written: then nothing has
-/// changed
+/// @throws config::ConfigError where the boat would be wrong; std::runtime_error as CheckPlace, and where it cannot be written: then the
+/// boat is as it was, unless an old file beside a new boat could not be renamed; every process refuses the two together
 std::vector<std::filesystem::path> WriteBoat(const std::filesystem::path& folder, const std::string& text, bool force);
 
 /// Of a written boat: what lookout-doctor would doubt in its numbers, a line each.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/services.hpp"
 #include "common/core/angles.hpp"
+#include "common/core/printable.hpp"
 #include "common/messages/alert_sound.hpp"
 #include "tools/diff/fields.hpp"
 
@@ -163,10 +165,14 @@ bool Board::Note(const T& message, TimePoint now) {
     const auto ended = tracks_parts_.Add(message);
     if (!ended.whole.empty()) KeepTracks(ended.whole, now);
     MarkAlerts();
+    MarkShips();
   } else if constexpr (std::is_same_v<T, alerts_t>) {
     alerts_ = message;
     alerts_time_ = now;
     MarkAlerts();
+  } else if constexpr (std::is_same_v<T, ais_t>) {
+    ais_ = message;
+    MarkShips();
   } else if constexpr (std::is_same_v<T, gnss_fix_t>) {
     own_.fix_quality = message.quality;
     own_.num_satellites = message.num_satellites;
@@ -196,6 +202,22 @@ void Board::KeepTracks(const std::vector<tracks_t>& parts, TimePoint now) {
   picture.lines.resize(std::min(picture.lines.size(), TrackPicture::kMaxLines));
   std::ranges::sort(picture.lines, {}, &TrackLine::id);
   tracks_ = std::move(picture);
+  tracks_begin_utime_us_ = parts.front().begin_utime_us;
+  tracks_utime_us_ = parts.front().utime_us;
+}
+
+// AIS of a scan comes behind its TRACKS: until then that of the scan before holds.
+void Board::MarkShips() {
+  constexpr std::int64_t kMostApartUs = 2'000'000;
+  if (!tracks_) return;
+  for (auto& line : tracks_->lines) line.ship.clear();
+  if (!ais_ || ais_->tracks_begin_utime_us != tracks_begin_utime_us_ || std::abs(ais_->utime_us - tracks_utime_us_) > kMostApartUs) return;
+  for (const auto& ship : ais_->ships) {
+    if (ship.state != ais_ship_t::STATE_TRACKED) continue;
+    const auto line = std::ranges::lower_bound(tracks_->lines, ship.track_id, {}, &TrackLine::id);
+    if (line == tracks_->lines.end() || line->id != ship.track_id) continue;
+    line->ship = ship.name.empty() ? std::to_string(ship.mmsi) : Printable(ship.name);
+  }
 }
 
 // Of the alerts of a track the gravest; alerts come sorted.

@@ -15,6 +15,7 @@
 #include "common/core/bytes.hpp"
 #include "common/messages/heading_history.hpp"
 #include "common/messages/part_assembler.hpp"
+#include "lookout/ais_t.hpp"
 #include "lookout/alerts_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/pose_t.hpp"
@@ -99,6 +100,7 @@ class Nearest {
 struct TrackLine : track_t {
   std::int32_t alert_level = 0;  // as in alert_t; 0: none
   bool is_acknowledged = false;
+  std::string ship = {};  // of AIS, that it is for sure: her name, else her MMSI; empty: none
 };
 
 /// Tracks of the newest scan that came whole.
@@ -175,6 +177,7 @@ class Board {
   bool Note(const T& message, TimePoint now);
   void KeepTracks(const std::vector<tracks_t>& parts, TimePoint now);
   void MarkAlerts();
+  void MarkShips();
   bool HasRoomFor(std::string_view process) const;
   void TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now);
   bool IsReplaced(const ProcessKey& key, const ProcessState& process) const;
@@ -188,6 +191,9 @@ class Board {
   Nearest nearest_;
   messages::PartAssembler<tracks_t> tracks_parts_;
   std::optional<TrackPicture> tracks_;
+  std::int64_t tracks_utime_us_ = 0;
+  std::int64_t tracks_begin_utime_us_ = 0;  // of the tracker's process
+  std::optional<ais_t> ais_;
   std::optional<alerts_t> alerts_;
   TimePoint alerts_time_;
   std::int64_t num_unlisted_ = 0;

@@ -193,7 +193,7 @@ std::vector<Span> ObstacleRows(const NearestObstacles* obstacles, View view) {
 std::string TracksHeader(const TrackPicture& tracks, View view) {
   return Fitting({Left(fmt::format("of {}", std::min<std::int64_t>(tracks.num_tracks, 999)), 6) + Right("track", 6), "  " + Left("kind", 9),
                   Right("range m", 8), Right("rel", 5), Right("course", 7), Right("m/s", 6), Right("CPA m", 7), Right("TCPA s", 7),
-                  "  " + Left("alert", 9), " " + Left("status", 9), Right("seen", 6)},
+                  "  " + Left("alert", 9), " " + Left("status", 9), Right("seen", 6), "  " + Left("AIS", 20)},
                  view.width);
 }
 
@@ -206,7 +206,7 @@ Span TrackSpan(std::size_t index, const TrackLine& line, int width) {
                Column(Number(line.range_m, 7, 1)), Right(Degrees(line.bearing_rad), 5), Right(Degrees(line.course_rad), 7),
                Column(Number(line.speed_mps, 5, 1)), Column(Number(line.cpa_m, 6, 1)), Column(Number(line.tcpa_s, 6, 0)), "  " + Left(alert, 9),
                " " + Left(words::WordOf(words::kTrackStatus, line.status), 9),
-               Right(fmt::format("{}/{}", std::clamp(line.num_seen, 0, 99), std::clamp(line.num_looks, 0, 99)), 6)},
+               Right(fmt::format("{}/{}", std::clamp(line.num_seen, 0, 99), std::clamp(line.num_looks, 0, 99)), 6), "  " + Left(line.ship, 20)},
               width),
       line.alert_level == alert_t::LEVEL_WARNING ? Style::kFault
       : line.alert_level != 0                    ? Style::kWarning

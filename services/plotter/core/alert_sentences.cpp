@@ -45,8 +45,8 @@ std::string AlertWithin(std::string text, std::size_t max_bytes) {
 // the same.
 int IdentifierOf(Cause cause) { return kFirstIdentifier + static_cast<int>(cause == Cause::kGuardZone ? Cause::kClosestApproach : cause); }
 
-// 1 to 999999; the watch's ids run from -1 down, and of the plotter's own there is one of a cause.
-std::int64_t InstanceOf(const Notice& notice) { return notice.id == 0 ? 1 : (std::abs(notice.id) - 1) % kMostInstance + 1; }
+// 1 to 999998; the watch's ids run from -1 down. 999999 is the plotter's own, of which there is one of a cause.
+std::int64_t InstanceOf(const Notice& notice) { return notice.id == 0 ? kMostInstance : (std::abs(notice.id) - 1) % (kMostInstance - 1) + 1; }
 
 std::string_view TitleOf(Cause cause) {
   switch (cause) {
@@ -150,7 +150,9 @@ LineKind ReadLine(std::string_view line, AlertCommand& command) {
   command.identifier = fields.Count(2, 9'999'999);
   command.number = fields.Count(3, static_cast<int>(kMostInstance));
   const auto kind = fields.Letter(4, "AQOS");
-  if (fields.fault() != SentenceFault::kNone || command.identifier < 0 || command.number < 0 || kind == '\0') return LineKind::kWrong;
+  const auto status = fields.Letter(5, "C");
+  if (fields.fault() != SentenceFault::kNone || command.identifier < 0 || command.number < 0 || kind == '\0' || status == '\0')
+    return LineKind::kWrong;
   command.kind = static_cast<AlertCommand::Kind>(kind);
   return maker == kMaker ? LineKind::kCommand : LineKind::kOther;
 }

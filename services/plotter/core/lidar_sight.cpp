@@ -37,7 +37,7 @@ bool LidarSight::GetsFar(const Eigen::Vector3d& direction_vessel) const {
   const double run = Hypot(direction_vessel.x(), direction_vessel.y());
   if (run <= 0.0) return false;
   const double slope = direction_vessel.z() / run;
-  return params_.above_water_m + slope * params_.reach_m <= kTopM && params_.above_water_m + slope * params_.reach_m / 2.0 >= 0.0;
+  return params_.above_water_m + slope * params_.reach_m <= kTopM && params_.above_water_m + slope * params_.reach_m >= 0.0;
 }
 
 void LidarSight::Add(const Column& column) {
@@ -74,7 +74,7 @@ void LidarSight::Add(const Column& column) {
 
 SectorSight::SectorSight(std::span<const Eigen::Vector2d> lidar_place_m, const Eigen::AlignedBox3d& own_vessel_box_m, double reach_m) {
   constexpr int kNumRanges = 40;
-  constexpr std::array kWithinDeg{-2.0, -1.0, 0.0, 1.0, 2.0};
+  constexpr std::array kWithinDeg{-2.5, -2.0, -1.0, 0.0, 1.0, 2.0, 2.49};
   const Eigen::AlignedBox2d own_box_m(Eigen::Vector2d(own_vessel_box_m.min().head<2>()), Eigen::Vector2d(own_vessel_box_m.max().head<2>()));
   for (std::size_t sector = 0; sector < kNumSectors; ++sector) {
     auto& places = places_[sector];
@@ -97,7 +97,7 @@ std::array<bool, kNumSectors> SectorSight::Looked(std::span<const LidarSight* co
   std::array<bool, kNumSectors> looked{};
   const auto num_lidars = std::min(lidars.size(), kMostLidars);
   for (std::size_t sector = 0; sector < kNumSectors; ++sector) {
-    looked[sector] = std::ranges::all_of(places_[sector], [&](const Bearings& bearings) {
+    looked[sector] = !places_[sector].empty() && std::ranges::all_of(places_[sector], [&](const Bearings& bearings) {
       for (std::size_t k = 0; k < num_lidars; ++k) {
         if (lidars[k] != nullptr && lidars[k]->Looks(bearings[k])) return true;
       }

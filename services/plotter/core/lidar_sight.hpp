@@ -30,7 +30,7 @@ struct SurroundingsParams {
 };
 
 /// One scan in whole degrees of bearing from the lidar, from the bow clockwise. A degree is looked into when of its columns more than half have a
-/// beam that gets past the own boat and is no higher than kTopM above the water at the reach, and does not meet the water before half of it.
+/// beam that gets past the own boat and is at the reach no higher than kTopM above the water, and not below it.
 class LidarSight {
  public:
   static constexpr std::size_t kNumBearings = 360;
@@ -69,7 +69,7 @@ class LidarSight {
   std::array<int, kNumBearings> num_looking_{};
 };
 
-/// Which sectors are looked into from the own boat to the reach, at each of five bearings. Geometry is made once.
+/// Which sectors are looked into from the own boat to the reach, at each of seven bearings. Geometry is made once.
 class SectorSight {
  public:
   /// @param lidar_place_m  vessel frame, of each lidar

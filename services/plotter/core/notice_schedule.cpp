@@ -16,7 +16,8 @@ constexpr int kRepeats = 2;
 constexpr auto kRepeatAfter = 3s;
 
 bool HasChanged(const Notice& one, const Notice& other) {
-  return one.level != other.level || one.state != other.state || one.sound != other.sound || one.escalation != other.escalation;
+  return one.level != other.level || one.state != other.state || one.sound != other.sound || one.escalation != other.escalation ||
+         one.raised != other.raised;
 }
 
 int Next(int revision) { return revision % kMostRevision + 1; }
@@ -30,6 +31,10 @@ std::int64_t KeyOf(const Notice& notice) {
 RaisedKey RaisedKeyOf(const Notice& notice) { return {KeyOf(notice), notice.raised}; }
 
 std::string SubjectOf(const Notice& notice) { return std::to_string(KeyOf(notice)) + " " + std::to_string(ToUtimeUs(notice.raised)); }
+
+RaisedKey NoticeSchedule::KeyFor(const Notice& notice) const {
+  return identity_ == Identity::kId ? RaisedKey{KeyOf(notice), Utime{}} : RaisedKeyOf(notice);
+}
 
 void NoticeSchedule::End(Sent sent, std::chrono::microseconds now, std::vector<Due>& due) {
   sent.notice.state = NoticeState::kCleared;
@@ -53,7 +58,7 @@ void NoticeSchedule::RepeatEnded(std::chrono::microseconds now, std::vector<Due>
 
 // What is dangerous again is the same alert: its end is told no more.
 int NoticeSchedule::FirstRevision(const RaisedKey& key, const Notice& notice) {
-  const auto ended = std::ranges::find(ended_, key, [](const Ended& one) { return RaisedKeyOf(one.sent.notice); });
+  const auto ended = std::ranges::find(ended_, key, [this](const Ended& one) { return KeyFor(one.sent.notice); });
   if (ended != ended_.end()) {
     const int revision = Next(ended->sent.revision);
     ended_.erase(ended);
@@ -70,7 +75,7 @@ std::vector<NoticeSchedule::Due> NoticeSchedule::Take(std::span<const Notice> no
   std::vector<Due> due;
   std::set<RaisedKey> keys;
   for (const auto& notice : notices) {
-    const auto key = RaisedKeyOf(notice);
+    const auto key = KeyFor(notice);
     keys.insert(key);
     if (notice.is_old) continue;
     const auto found = sent_.find(key);
@@ -122,12 +127,12 @@ std::vector<ToldNotice> NoticeSchedule::Standing() const {
   return standing;
 }
 
-void NoticeSchedule::TellAgain(const RaisedKey& key) {
-  if (const auto found = sent_.find(key); found != sent_.end()) found->second.next = {};
+void NoticeSchedule::TellAgain(const Notice& notice) {
+  if (const auto found = sent_.find(KeyFor(notice)); found != sent_.end()) found->second.next = {};
 }
 
 void NoticeSchedule::Recall(std::span<const ToldNotice> notices) {
-  for (const auto& told : notices) recalled_.emplace(RaisedKeyOf(told.notice), told);
+  for (const auto& told : notices) recalled_.emplace(KeyFor(told.notice), told);
 }
 
 }  // namespace lookout::plotter

@@ -33,6 +33,11 @@ struct ToldNotice {
 /// kEndedFor: else one lost message leaves an alarm standing. Time is host time passed.
 class NoticeSchedule {
  public:
+  /// kRaising: each raising of an alert is told by itself. kId: a receiver knows them by their ids alone, so what is raised anew under the id of
+  /// another is that one, changed.
+  enum class Identity { kRaising, kId };
+  explicit NoticeSchedule(Identity identity = Identity::kRaising) : identity_(identity) {}
+
   static constexpr std::chrono::seconds kPeriod{10};
   static constexpr std::chrono::minutes kEndedFor{10};
   static constexpr std::size_t kMostEnded = 200;
@@ -52,7 +57,7 @@ class NoticeSchedule {
   /// Those that were told and are not over, by KeyOf.
   std::vector<ToldNotice> Standing() const;
   /// With the next Take.
-  void TellAgain(const RaisedKey& key);
+  void TellAgain(const Notice& notice);
 
   /// Of the process before: its notices keep their revisions, and one that changed meanwhile has the next. No notice is made of them.
   void Recall(std::span<const ToldNotice> notices);
@@ -68,10 +73,12 @@ class NoticeSchedule {
     std::chrono::microseconds ended{0};
     int num_repeats = 0;
   };
+  RaisedKey KeyFor(const Notice& notice) const;
   int FirstRevision(const RaisedKey& key, const Notice& notice);
   void End(Sent sent, std::chrono::microseconds now, std::vector<Due>& due);
   void RepeatEnded(std::chrono::microseconds now, std::vector<Due>& due);
 
+  Identity identity_;
   std::map<RaisedKey, Sent> sent_;
   std::map<RaisedKey, ToldNotice> recalled_;
   std::vector<Ended> ended_;  // the oldest first

@@ -43,7 +43,7 @@ enum class Sound { kQuiet, kSounds, kSilenced };
 struct Target {
   std::int64_t id = 0;          // of its track
   std::string name;             // "boat 17": printable ASCII
-  std::string given_name = {};  // by people, UTF-8; "": none
+  std::string given_name = {};  // by people, else of the ship by AIS, UTF-8; "": none
   TargetState state = TargetState::kTracking;
   Utime first;  // seen
   Position position;

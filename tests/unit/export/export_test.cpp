@@ -228,6 +228,8 @@ TEST(Words, StandInTheReadmeOfTheWire) {
   expect_listed(words::kTrackStatus);
   expect_listed(words::kTrackKind);
   expect_listed(words::kEncounter);
+  expect_listed(words::kAisSender);
+  expect_listed(words::kAisState);
   expect_listed(words::kHeadingSource);
   expect_listed(words::kAlertCause);
   expect_listed(words::kAlertLevel);

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "common/core/angles.hpp"
+#include "lookout/ais_t.hpp"
 #include "lookout/alerts_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "tests/unit/export/export_logs.hpp"
@@ -159,6 +160,31 @@ TEST_F(TablesTest, TracksHaveARowForEachTrackAndScan) {
       << Rows()[0];
   EXPECT_NE(Rows()[0].find(",head_on,"), std::string::npos);
   EXPECT_TRUE(Rows()[1].starts_with("1700000000099999,18,0.000000000,0.000000000,0.0000,,0.0000,0.00,lost,obstacle,")) << Rows()[1];
+}
+
+TEST_F(TablesTest, AisHasARowForEachShip) {
+  ais_t message{};
+  message.utime_us = message.end_utime_us = kStartUs;
+  message.scan_seq = 5;
+  message.num_ships = 1;
+  auto& ship = message.ships.emplace_back();
+  ship = {};
+  ship.mmsi = 211000001;
+  ship.name = "=EVE, REST";
+  ship.state = ais_ship_t::STATE_TRACKED;
+  ship.sender = ais_ship_t::SENDER_CLASS_B;
+  ship.track_id = 17;
+  ship.track_probability = 0.995F;
+  ship.latitude_deg = 43.7;
+  ship.longitude_deg = -72.3;
+  ship.heading_rad = std::numeric_limits<float>::quiet_NaN();
+  ship.navigational_status = -1;
+  Add(bus::kAis, message);
+  ASSERT_EQ(Export("ais"), kExitFine) << errors_;
+  ASSERT_EQ(Rows().size(), 1U);
+  EXPECT_EQ(Rows()[0],
+            "1700000000000000,211000001,\"'=EVE, REST\",,tracked,17,0.9950,class_b,0,43.700000000,-72.300000000,0.0000,0.0000,0,0,0,0.0000,0.0000,"
+            "0.0000,0.0000,,,0.0000,0.0000,0.0000,0.0000,0,0,0,0,0,0,5");
 }
 
 TEST_F(TablesTest, AlertsHaveTheirWordsAndTheirText) {

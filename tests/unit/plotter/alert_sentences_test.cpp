@@ -98,6 +98,7 @@ TEST(PlotterAlertSentences, ReadsWhatIsAskedOfWhichAlert) {
   EXPECT_EQ(read("IIACN,102031.00,LKO,10002,3,O,C").second.kind, AlertCommand::Kind::kHandOver);
   EXPECT_EQ(read("IIACN,102031.00,LKO,10002,3,,C").first, LineKind::kWrong);
   EXPECT_EQ(read("IIACN,102031.00,LKO,10002,3,X,C").first, LineKind::kWrong);
+  EXPECT_EQ(read("IIACN,102031.00,LKO,10002,3,A,R").first, LineKind::kWrong) << "no command";
   EXPECT_EQ(read("IIACN,102031.00,XYZ,10002,3,A,C").first, LineKind::kOther);  // of another maker
   EXPECT_EQ(read("GPGGA,1,2,3").first, LineKind::kOther);
   EXPECT_EQ(read("IIACK,").first, LineKind::kWrong);
@@ -119,7 +120,7 @@ TEST(PlotterAlertSentences, NumbersAlertsFrom1To997AndKeepsThreeForItsOwn) {
   EXPECT_EQ(AlarmNumber(own), 998);
   own.cause = Cause::kPosition;
   EXPECT_EQ(AlarmNumber(own), 999);
-  EXPECT_NE(Alf("RA", own, test::kTime, 0, 1).find(",10004,1,1,0,NO OWN POSITION*"), std::string::npos);
+  EXPECT_NE(Alf("RA", own, test::kTime, 0, 1).find(",10004,999999,1,0,NO OWN POSITION*"), std::string::npos);
   auto gap = MakeNotice(5);
   gap.cause = Cause::kPartUnseen;
   EXPECT_NE(Alf("RA", gap, test::kTime, 0, 1).find(",10005,5,1,0,LOOK-OUT GAP*"), std::string::npos);

@@ -123,5 +123,49 @@ TEST_F(AlfOutput, GoesOnWithItsRevisionsAfterARestart) {
   EXPECT_EQ(link_->With(",B,W,A,LKO,10002,3,1,0,").size(), 1U) << "a damaged file keeps nobody from being told";
 }
 
+// The tracker's first alert of the watch and the plotter's own were one on the wire: the end of one took off the other.
+TEST_F(AlfOutput, TellsItsOwnWatchApartFromTheTrackers) {
+  alerts_ = {MakeAlert(-1)};
+  alerts_[0].cause = alert_t::CAUSE_WATCH;
+  Run(300'000);
+  EXPECT_EQ(link_->With(",B,W,V,LKO,10003,1,1,0,").size(), 1U);
+  EXPECT_FALSE(link_->With("HBT,30,V,").empty());
+  Wait(1'300'000);
+  EXPECT_EQ(link_->With(",B,W,V,LKO,10003,999999,1,0,").size(), 1U);
+  Run(8'000'000);
+  EXPECT_FALSE(link_->With(",N,LKO,10003,999999,").empty());
+  EXPECT_TRUE(link_->With(",N,LKO,10003,1,").empty());
+}
+
+// Ids begin anew with each process of the tracker: the end of the old alert took off the new one of its number.
+TEST_F(AlfOutput, TellsNoEndOfANumberThatIsInUse) {
+  alerts_ = {MakeAlert(1)};
+  Run(300'000);
+  alerts_.clear();
+  begin_us_ += 5'000'000;
+  Run(1'000'000);
+  EXPECT_EQ(link_->With(",N,LKO,10002,1,2,").size(), 1U);
+  alerts_ = {MakeAlert(1)};
+  alerts_[0].raised_utime_us += 5'000'000;
+  link_->sent.clear();
+  Run(8'000'000);
+  EXPECT_EQ(link_->With(",B,W,V,LKO,10002,1,3,0,").size(), 1U);
+  EXPECT_TRUE(link_->With(",N,LKO,").empty());
+  ++link_->openings;
+  Run(4'000'000);
+  EXPECT_TRUE(link_->With(",N,LKO,").empty()) << "nor to a new receiver";
+}
+
+// At 4800 baud no list of many alerts fits at once.
+TEST_F(AlfOutput, ListsManyAlertsOverASlowPort) {
+  for (int id = 1; id <= 30; ++id) alerts_.push_back(MakeAlert(id));
+  for (int i = 0; i < 320; ++i) {
+    link_->room = 256;
+    Run(100'000);
+  }
+  EXPECT_FALSE(link_->With("HBT").empty());
+  EXPECT_GE(link_->With("ALC").size(), 8U) << "four alerts in each";
+}
+
 }  // namespace
 }  // namespace lookout::plotter

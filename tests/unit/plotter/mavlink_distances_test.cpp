@@ -215,13 +215,19 @@ TEST_F(MavlinkService, SaysNothingIsClearWhereAPoseWithinTheScanIsMissing) {
 // Without the scan nobody knows what else is there; without a track either there is nothing to say.
 TEST_F(MavlinkService, SaysNothingIsClearWithoutTheScan) {
   tracks_ = {TrackOf(4, Box(Ahead(1, 10.0, 0.0), 2.0, 2.0, -heading_rad_))};
-  for (bool* sends : {&sends_scan_, &sends_labels_}) {
-    *sends = false;
-    const auto frame = Last();
-    ASSERT_TRUE(frame);
-    EXPECT_LT(frame->distance_cm(0), 1200);
-    for (std::size_t i = 0; i < kNumSectors; ++i) EXPECT_NE(frame->distance_cm(i), 4001) << i;
-    *sends = true;
+  // A structure is told by its returns, where they come.
+  for (const bool is_structure : {false, true}) {
+    tracks_[0].kind = is_structure ? std::int32_t{track_t::KIND_STRUCTURE} : std::int32_t{track_t::KIND_BOAT};
+    tracks_[0].num_segments = 1;
+    tracks_[0].segment_ids = {1};
+    for (bool* sends : {&sends_scan_, &sends_labels_}) {
+      *sends = false;
+      const auto frame = Last();
+      ASSERT_TRUE(frame);
+      EXPECT_LT(frame->distance_cm(0), 1200);
+      for (std::size_t i = 0; i < kNumSectors; ++i) EXPECT_NE(frame->distance_cm(i), 4001) << i;
+      *sends = true;
+    }
   }
   sends_scan_ = false;
   tracks_.clear();

@@ -72,6 +72,54 @@ TEST_F(PlotterService, SendsTentativeTracksOnlyWhereAsked) {
   EXPECT_EQ(nmea_->With(",Q,").size(), 1U);
 }
 
+ais_t AisOf(std::int64_t track_id, const std::string& name, std::int64_t end_us, std::int64_t begin_us) {
+  ais_t message{};
+  message.utime_us = message.end_utime_us = end_us;
+  message.tracks_begin_utime_us = begin_us;
+  message.num_ships = 1;
+  auto& ship = message.ships.emplace_back();
+  ship = {};
+  ship.mmsi = 211000001;
+  ship.name = name;
+  ship.state = ais_ship_t::STATE_TRACKED;
+  ship.track_id = track_id;
+  return message;
+}
+
+TEST_F(PlotterService, CallsATargetAsItsShipUnlessPeopleGaveAName) {
+  tracks_ = {MakeTrack(17)};
+  Run(1'000'000);
+  support::Send(*bus_, bus::kAis, AisOf(17, "EVEREST", host_us_, begin_us_));
+  Run(1'200'000);
+  EXPECT_NE(signal_k_->With("gannet-17").back().find("EVEREST"), std::string::npos);
+  support::Send(*bus_, bus::kAis, AisOf(17, "", host_us_, begin_us_));
+  Run(1'200'000);
+  EXPECT_NE(signal_k_->With("gannet-17").back().find("MMSI 211000001"), std::string::npos);
+  names_ = {{17, "Kiosk pier"}};
+  Run(1'200'000);
+  EXPECT_NE(signal_k_->With("gannet-17").back().find("Kiosk pier"), std::string::npos);
+  // Of another process of the tracker the number means another thing.
+  names_.clear();
+  support::Send(*bus_, bus::kAis, AisOf(17, "EVEREST", host_us_, begin_us_ + 1));
+  Run(1'200'000);
+  EXPECT_EQ(signal_k_->With("gannet-17").back().find("EVEREST"), std::string::npos);
+}
+
+TEST_F(PlotterService, LeavesShipsOutForAPlotterThatHasAis) {
+  params_.sends_ais_targets = false;
+  Start();
+  tracks_ = {MakeTrack(17), MakeTrack(18)};
+  support::Send(*bus_, bus::kAis, AisOf(17, "EVEREST", host_us_ + 200'000, begin_us_));
+  Run(1'000'000);
+  EXPECT_TRUE(signal_k_->With("gannet-17").empty());
+  EXPECT_FALSE(signal_k_->With("gannet-18").empty());
+  // What an alert tells of is there.
+  alerts_ = {MakeAlert(3)};
+  alerts_[0].track_id = 17;
+  Run(500'000);
+  EXPECT_FALSE(signal_k_->With("gannet-17").empty());
+}
+
 TEST_F(PlotterService, StopsWhenNobodyLooks) {
   tracks_ = {MakeTrack(17)};
   Run(3'000'000);

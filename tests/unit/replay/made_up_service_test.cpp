@@ -52,26 +52,29 @@ const ChannelSet kDayWithFused{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_ODOMETRY", 
 std::string PlanWithFuser(const Request& request) { return InWords(MakeLogPlan(request, kDayWithFused, WithFuser())); }
 
 TEST(MadeUpService, IsPlannedByItsRow) {
-  EXPECT_EQ(PlanWithFuser({}),
-            "ran: lidar, segmenter, odometer, navigator, georeferencer, tracker, fuser, painter\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(
+      PlanWithFuser({}),
+      "ran: lidar, segmenter, odometer, navigator, georeferencer, tracker, ais, fuser, painter\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(PlanWithFuser({.only = {"fuser"}}), "ran: fuser\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
   EXPECT_EQ(PlanWithFuser({.from = {"POSE"}, .only = {"fuser", "segmenter", "lidar"}}),
             "ran: lidar, segmenter, fuser\nread: LIDAR_PACKETS, POSE, OBSTACLES\n");
-  EXPECT_EQ(PlanWithFuser({.from = {"OBSTACLES"}}), "ran: tracker, fuser, painter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK, ORDERS\n");
-  EXPECT_EQ(PlanWithFuser({.from = {"FUSED"}}), "ran: tracker, painter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK, ORDERS, FUSED\n");
+  EXPECT_EQ(PlanWithFuser({.from = {"OBSTACLES"}}),
+            "ran: tracker, ais, fuser, painter\nread: LIDAR_SCAN, SEGMENTS, NAV_RAW, POSE, OBSTACLES, ALERT_ACK, ORDERS\n");
+  EXPECT_EQ(PlanWithFuser({.from = {"FUSED"}}),
+            "ran: tracker, ais, painter\nread: LIDAR_SCAN, SEGMENTS, NAV_RAW, POSE, OBSTACLES, ALERT_ACK, ORDERS, FUSED\n");
   EXPECT_THROW(PlanWithFuser({.from = {"FUSED"}, .only = {"georeferencer"}}), RequestError);
   EXPECT_EQ(InWords(MakeCapturePlan({}, WithFuser())),
-            "ran: lidar, segmenter, odometer, navigator, georeferencer, tracker, fuser, painter\nread: datagrams\n");
+            "ran: lidar, segmenter, odometer, navigator, georeferencer, tracker, ais, fuser, painter\nread: datagrams\n");
   EXPECT_THROW(MakeCapturePlan({.only = {"fuser"}}, WithFuser()), RequestError);
 }
 
 TEST(MadeUpService, IsListed) {
   EXPECT_EQ(ServiceNames(WithFuser()),
-            (std::vector<std::string>{"lidar", "segmenter", "odometer", "navigator", "georeferencer", "tracker", "fuser", "painter"}));
-  EXPECT_EQ(FromNames(),
-            (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_ODOMETRY", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES"}));
+            (std::vector<std::string>{"lidar", "segmenter", "odometer", "navigator", "georeferencer", "tracker", "ais", "fuser", "painter"}));
+  EXPECT_EQ(FromNames(), (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_ODOMETRY", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE",
+                                                   "OBSTACLES", "TRACKS"}));
   EXPECT_EQ(FromNames(WithFuser()), (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_ODOMETRY", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW",
-                                                              "POSE", "OBSTACLES", "FUSED"}));
+                                                              "POSE", "OBSTACLES", "TRACKS", "FUSED"}));
 }
 
 TEST(MadeUpService, RunsBehindWhatItReads) {
@@ -115,9 +118,9 @@ TEST(MadeUpService, FillsTheRoleOfAnother) {
   ASSERT_EQ(rows.front().role, bus::kLidarScan.publisher);
   rows.front().name = "lidar32";
   EXPECT_EQ(InWords(MakeLogPlan({}, kDayWithFused, rows)),
-            "ran: lidar32, segmenter, odometer, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
+            "ran: lidar32, segmenter, odometer, navigator, georeferencer, tracker, ais\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(InWords(MakeLogPlan({.from = {"LIDAR_SCAN"}}, kDayWithFused, rows)),
-            "ran: segmenter, odometer, navigator, georeferencer, tracker\nread: LIDAR_SCAN, NAV_RAW, ALERT_ACK, ORDERS\n");
+            "ran: segmenter, odometer, navigator, georeferencer, tracker, ais\nread: LIDAR_SCAN, NAV_RAW, ALERT_ACK, ORDERS\n");
   EXPECT_EQ(InWords(MakeLogPlan({.only = {"lidar32"}}, kDayWithFused, rows)), "ran: lidar32\nread: LIDAR_PACKETS\n");
   EXPECT_THROW(MakeLogPlan({.from = {"LIDAR_SCAN"}, .only = {"lidar32"}}, kDayWithFused, rows), RequestError);
   const auto plan = MakeCapturePlan({.only = {"lidar32", "segmenter"}}, rows);

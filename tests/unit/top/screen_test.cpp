@@ -21,7 +21,8 @@ namespace {
 Board BusyBoard() {
   Board board(kStart);
   for (const auto& channel : bus::kChannels) {
-    const bool is_of_tracker = channel.publisher == "tracker" || channel.publisher == "several" || bus::IsOfSecondLidar(channel);
+    const bool is_of_tracker =
+        channel.publisher == "tracker" || channel.publisher == "ais" || channel.publisher == "several" || bus::IsOfSecondLidar(channel);
     if (channel.name != "SIM_TRUTH" && channel.name != "HEALTH" && !is_of_tracker) board.Take(channel.name, {}, At(1.9));
   }
   pose_t pose = PoseAt(1'000'000, DegToRad(90.0));
@@ -217,6 +218,27 @@ TEST(Screen, ShowsTracksInPlaceOfObstaclesWhereThereIsATracker) {
   EXPECT_TRUE(Has(Lines(DrawScreen(board, "title", At(2.0), {80, 40})), "  2       17  boat         20.0  040    270   2.5    3.0     21  warning"));
   const auto obstacles = Lines(DrawScreen(board, "title", At(2.0), {.width = 80, .height = 40, .has_tracks = false}));
   EXPECT_TRUE(Has(obstacles, "  1     1     4.5  000  090"));
+}
+
+TEST(Screen, ShowsWhichShipATrackIsWhereThereIsRoom) {
+  auto board = TrackedBoard({TrackAt(9, 50.0F), TrackAt(17, 20.0F)});
+  ais_t message{};
+  message.num_ships = 3;
+  for (const auto& [mmsi, name, state] :
+       {std::tuple(211000001, "EVEREST", +ais_ship_t::STATE_TRACKED), std::tuple(211000002, "", +ais_ship_t::STATE_TRACKED),
+        std::tuple(211000003, "MAYBE", +ais_ship_t::STATE_UNSURE)}) {
+    auto& ship = message.ships.emplace_back();
+    ship = {};
+    ship.mmsi = mmsi;
+    ship.name = name;
+    ship.state = state;
+    ship.track_id = mmsi == 211000002 ? 17 : 9;
+  }
+  Say(board, bus::kAis, message, 1.97);
+  const auto lines = Lines(DrawScreen(board, "title", At(2.0), {130, 40}));
+  EXPECT_TRUE(Has(lines, "confirmed 14/15  EVEREST"));
+  EXPECT_TRUE(Has(lines, "confirmed 14/15  211000002"));
+  EXPECT_FALSE(Has(lines, "MAYBE"));
 }
 
 TEST(Screen, SaysNoLookOutWhenAlertsAreOlderThanASecond) {

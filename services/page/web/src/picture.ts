@@ -4,7 +4,7 @@ import type { BoatFacts, Frame, Mounting } from "./link.js";
 import { Refused } from "./messages/reader.js";
 
 /** Channels that a picture is made of. */
-export const kPictureChannels = ["LIDAR_SCAN", "LIDAR_SCAN_2", "SEGMENTS", "SEGMENTS_2", "OBSTACLES", "TRACKS", "ALERTS", "POSE", "LIDAR_CLOCK", "GNSS_FIX", "HEALTH", "RUN_INFO"];
+export const kPictureChannels = ["LIDAR_SCAN", "LIDAR_SCAN_2", "SEGMENTS", "SEGMENTS_2", "OBSTACLES", "TRACKS", "ALERTS", "AIS", "POSE", "LIDAR_CLOCK", "GNSS_FIX", "HEALTH", "RUN_INFO"];
 
 /** Added to the labels of a second lidar that are segments: its SEGMENTS_2 have numbers of their own. */
 export const kSecondLidar = 0x10000;
@@ -52,6 +52,10 @@ export interface Picture {
   alert_of_track: ReadonlyMap<number, wire.Alert>;
   /** What people called a track. */
   name_of_track: ReadonlyMap<number, string>;
+  /** Ships of AIS, while it is no older than the tracks. */
+  ships: wire.AisShip[];
+  /** The ship of AIS that a track is, where that is sure. */
+  ship_of_track: ReadonlyMap<number, wire.AisShip>;
   /** Of the end of the scan, or the newest. */
   pose: wire.Pose | null;
   /** Own position in the map frame at the end of the scan; NaN = not known. */
@@ -84,6 +88,8 @@ class Parts<T extends Parted> {
 }
 
 const kPosesKept = 64;
+/** AIS of another scan is shown beside tracks so long: a moment of a recording has that of the scan before. */
+const kAisKept_us = 1_500_000;
 const kNoParts: wire.Segments[] = [];
 const kSecondScansKept = 8;
 /** The scan of the second lidar that is shown ended so long before that of the first, or later. */
@@ -103,6 +109,7 @@ export class Assembler {
   private readonly tracks = new Parts<wire.Tracks>();
   private waterline = new Float32Array();
   private alerts: wire.Alerts | null = null;
+  private ais: wire.Ais | null = null;
   private readonly poses: wire.Pose[] = [];
   private clock: wire.LidarClock | null = null;
   private fix: wire.GnssFix | null = null;
@@ -153,6 +160,7 @@ export class Assembler {
         return true;
       }
       case "ALERTS": this.alerts = wire.Alerts.decode(bytes); return true;
+      case "AIS": this.ais = wire.Ais.decode(bytes); return false;
       case "POSE":
         this.poses.push(wire.Pose.decode(bytes));
         this.poses.sort((a, b) => a.utime_us - b.utime_us);
@@ -211,12 +219,16 @@ export class Assembler {
     const motion = motionOf(this.poses, pose);
     const after_s = pose === null ? 0 : Math.min(0.5, Math.max(-0.5, (end_utime_us - pose.utime_us) / 1e6));
     const newest = Math.max(0, ...this.times.values());
+    const { ais } = this, ofTracks = tracksParts[0];
+    const hasAis = ais !== null && Math.abs(ais.end_utime_us - end_utime_us) < kAisKept_us && (ofTracks === undefined || ais.tracks_begin_utime_us === ofTracks.begin_utime_us);
+    const ships = hasAis ? ais.ships : [];
+    const ship_of_track = new Map(ships.filter((ship) => ship.state === wire.AisShip.STATE_TRACKED).map((ship) => [ship.track_id, ship]));
     return {
       utime_us: first?.utime_us ?? tracksParts[0]?.utime_us ?? newest, end_utime_us, boat: this.boat, scan,
       returns: scan.length === 0 ? null : this.returnsOf({ scan, labels: isOfScan ? segmentParts : kNoParts }, this.seenBySecond(end_utime_us), pose, motion.turn_radps),
       segments, obstacles: this.obstacles.whole.flatMap((part) => part.obstacles), tracks,
       track_by_id: new Map(tracks.map((track) => [track.id, track])), track_of_segment, land_segments, waterline_map_m: this.waterline,
-      alerts, alert_report: this.alerts, alert_of_track, name_of_track, pose,
+      alerts, alert_report: this.alerts, alert_of_track, name_of_track, ships, ship_of_track, pose,
       own_east_m: pose === null ? NaN : pose.position_map_m[0]! + after_s * (pose.velocity_map_mps[0]! || 0),
       own_north_m: pose === null ? NaN : pose.position_map_m[1]! + after_s * (pose.velocity_map_mps[1]! || 0),
       heading_rad: pose === null ? NaN : pose.heading_rad + after_s * motion.turn_radps,

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { Health, Pose, Track } from "../src/messages/generated.js";
+import { type AisShip, Health, Pose, Track } from "../src/messages/generated.js";
 import { channelsOf, faultOfPage, gravityOfProcess, Roll } from "../src/views/traffic.js";
 import { nameOf, relative, restsOn, shortNameOf, situation } from "../src/views/track_words.js";
 import { isOnlyCourse, lacking } from "../src/picture.js";
@@ -64,6 +64,16 @@ test("a track is called as people named it, else by kind and number", () => {
   assert.equal(nameOf({ id: 7, kind }, { name_of_track }), "Anna's mooring buoy");
   assert.equal(nameOf({ id: 8, kind }, { name_of_track }), "Buoy 8");
   assert.equal(shortNameOf({ id: 8, kind }, { name_of_track }), "buoy 8");
+});
+
+test("a track that AIS knows is called as its ship, unless people gave it a name", () => {
+  const name_of_track = new Map([[7, "Anna's mooring buoy"]]), kind = Track.KIND_BOAT;
+  const ship = (name: string): AisShip => ({ mmsi: 2110001, name }) as AisShip;
+  const ship_of_track = new Map([[7, ship("EVEREST")], [8, ship("EVEREST")], [9, ship("")]]);
+  assert.equal(nameOf({ id: 7, kind }, { name_of_track, ship_of_track }), "Anna's mooring buoy");
+  assert.equal(nameOf({ id: 8, kind }, { name_of_track, ship_of_track }), "EVEREST");
+  assert.equal(shortNameOf({ id: 9, kind }, { name_of_track, ship_of_track }), "MMSI 002110001");
+  assert.equal(nameOf({ id: 10, kind }, { name_of_track, ship_of_track }), "Boat 10");
 });
 
 test("a name that is typed is as long as the look-out takes it", () => {

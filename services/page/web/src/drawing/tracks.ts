@@ -66,10 +66,11 @@ export function paintTracks(scene: Scene): void {
     const radius_px = Math.max(kLeast_px, Math.min(30, track.width_m * plane.px_per_m / 2));
     const isRaised = alert !== undefined, moves = track.speed_mps > 0.3, range = length(state.settings, track.range_m);
     // Many stand about: of them the number and the range in one line is enough.
-    const isPlain = !isRaised && !isOn && !moves && !picture.name_of_track.has(track.id), name = shortNameOf(track, picture);
+    const isPlain = !isRaised && !isOn && !moves && !picture.name_of_track.has(track.id) && !picture.ship_of_track.has(track.id);
+    const name = shortNameOf(track, picture), ship = picture.ship_of_track.get(track.id), facts = moves ? `${range}  ${speed(state.settings, track.speed_mps)}` : range;
     const label = {
       x_px: x, y_px: y, radius_px,
-      lines: isPlain ? [texts.drawing.plain(track.kind, track.id, range)] : [name, moves ? `${range}  ${speed(state.settings, track.speed_mps)}` : range],
+      lines: isPlain ? [texts.drawing.plain(track.kind, track.id, range)] : ship === undefined || ship.name === "" ? [name, facts] : [name, texts.drawing.mmsi(ship.mmsi), facts],
       colour: theme.css[isRaised || isOn ? trackColour(track, alert) : isPlain ? "muted" : "text"], isBoxed: isRaised || isOn,
       ...(isRaised ? alertLines(scene, alert) : {}),
     };

@@ -20,6 +20,7 @@ export const en = {
     kinds: ["obstacle", "buoy", "boat", "structure", "obstacle"],
     name: (kind: number, id: number): string => `${en.drawing.kinds[kind] ?? "obstacle"} ${id}`,
     plain: (kind: number, id: number, range: string): string => `${kind === 0 || kind === 4 ? "" : `${en.drawing.kinds[kind] ?? ""} `}${id} · ${range}`,
+    mmsi: (mmsi: number): string => `MMSI ${String(mmsi).padStart(9, "0")}`, ais_only: "AIS only: the lidar sees nothing there", ais: "AIS",
     approach: (distance: string, time: string) => `${distance} in ${time}`,
     around: (numTracks: number, nearest: string) => `Picture around the boat: ${numTracks} tracks${nearest === "" ? "" : `, the nearest is ${nearest}`}`,
     map: (position: string) => `Map, own boat at ${position}`,

@@ -171,7 +171,7 @@ export class CloudView implements View {
   }
   private labelOf(track: Track, names: Picture, isNamed: boolean): string {
     const range = length(this.state.settings, track.range_m);
-    return isNamed || names.name_of_track.has(track.id) ? `${shortNameOf(track, names)}  ${range}` : texts.drawing.plain(track.kind, track.id, range);
+    return isNamed || names.name_of_track.has(track.id) || names.ship_of_track.has(track.id) ? `${shortNameOf(track, names)}  ${range}` : texts.drawing.plain(track.kind, track.id, range);
   }
   private isShown(picture: Picture, track: Track): boolean {
     return track.status !== 4 && (track.status !== 1 || this.state.settings.get("shows_tentative") || picture.alert_of_track.has(track.id));

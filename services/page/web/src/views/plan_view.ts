@@ -10,6 +10,7 @@ import { pickReturn, pickTrack } from "../drawing/pick.js";
 import { Plane } from "../drawing/plane.js";
 import { Points } from "../drawing/points.js";
 import { ownPlace, type Scene } from "../drawing/scene.js";
+import { paintShips } from "../drawing/ships.js";
 import { Stage } from "../drawing/stage.js";
 import { isShown, paintTracks, paintTrails } from "../drawing/tracks.js";
 import { Trails } from "../drawing/trails.js";
@@ -131,6 +132,7 @@ export abstract class PlanView implements View {
       paintTrails(scene);
       paintOwnBoat(scene);
       paintTracks(scene);
+      paintShips(scene);
     } else paintOwnBoat(scene);
     paintAlertPlaces(scene);
     this.measure.paint(scene, (from, to) => this.between(from, to));

@@ -6,7 +6,7 @@ import { duration, length } from "../units.js";
 import { button, Facts, make, setAttribute, setText } from "./dom.js";
 import { gravityOf } from "./gravity.js";
 import { NameForm } from "./name_form.js";
-import { nameOf, situation, textsOf } from "./track_words.js";
+import { nameOf, shipName, situation, textsOf } from "./track_words.js";
 
 const words = texts.panels.tracks;
 
@@ -69,6 +69,8 @@ export class TrackDetail {
     facts.set(names.drift, Number.isFinite(track.bearing_drift_radps) ? words.perSecond((track.bearing_drift_radps * 180 / Math.PI).toFixed(1)) : null);
     facts.set(names.first, texts.panels.health.ago(duration(Math.max(0, (picture.end_utime_us - track.first_utime_us) / 1e6))));
     facts.set(names.seen, texts.panels.health.ago(duration(Math.max(0, (picture.end_utime_us - track.seen_utime_us) / 1e6))));
+    const ship = picture.ship_of_track.get(track.id);
+    facts.set(texts.drawing.ais, ship === undefined ? null : `${shipName(ship)}, ${texts.drawing.mmsi(ship.mmsi)}${ship.call_sign === "" ? "" : `, ${ship.call_sign}`}`, true);
     facts.set(names.place, place(track.latitude_deg, track.longitude_deg), true);
   }
 }

@@ -8,13 +8,23 @@ import { bearing, duration, length, speed } from "../units.js";
 const words = texts.panels.tracks;
 const kDegree = Math.PI / 180;
 
-/** As people call it, else by kind and number. */
-export function nameOf(track: Pick<wire.Track, "kind" | "id">, { name_of_track }: Pick<Picture, "name_of_track">): string {
-  return name_of_track.get(track.id) ?? words.name(words.kinds[track.kind] ?? words.kinds[4]!, track.id);
+/** What tells of names: of people, and of ships. */
+export type Names = Pick<Picture, "name_of_track"> & Partial<Pick<Picture, "ship_of_track">>;
+
+/** By her name, else by her MMSI. */
+export function shipName(ship: Pick<wire.AisShip, "name" | "mmsi">): string { return ship.name === "" ? texts.drawing.mmsi(ship.mmsi) : ship.name; }
+function nameByShip(track: Pick<wire.Track, "id">, { ship_of_track }: Names): string | undefined {
+  const ship = ship_of_track?.get(track.id);
+  return ship === undefined ? undefined : shipName(ship);
+}
+
+/** As people call it, else as AIS does, else by kind and number. */
+export function nameOf(track: Pick<wire.Track, "kind" | "id">, names: Names): string {
+  return names.name_of_track.get(track.id) ?? nameByShip(track, names) ?? words.name(words.kinds[track.kind] ?? words.kinds[4]!, track.id);
 }
 /** The same within a sentence or a picture: "boat 7". */
-export function shortNameOf(track: Pick<wire.Track, "kind" | "id">, { name_of_track }: Pick<Picture, "name_of_track">): string {
-  return name_of_track.get(track.id) ?? texts.drawing.name(track.kind, track.id);
+export function shortNameOf(track: Pick<wire.Track, "kind" | "id">, names: Names): string {
+  return names.name_of_track.get(track.id) ?? nameByShip(track, names) ?? texts.drawing.name(track.kind, track.id);
 }
 
 /** From the bow, as a helmsman says it. */
