@@ -40,9 +40,11 @@ TEST_F(Replay, FromAnyLevelGivesTheSameBytes) {
   const std::vector<std::pair<std::vector<std::string>, std::set<std::string>>> parts{
       {{"--from", "LIDAR_SCAN"},
        {"LIDAR_SCAN", "LIDAR_ODOMETRY", "NAV_RAW", "SEGMENTS", "GNSS_FIX", "ATTITUDE", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
-      {{"--from", "SEGMENTS", "--from", "POSE"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
-      {{"--from", "OBSTACLES"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
-      {{"--from", "POSE"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
+      // NAV_RAW is read for the ships of AIS in it.
+      {{"--from", "SEGMENTS", "--from", "POSE"}, {"LIDAR_SCAN", "NAV_RAW", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
+      {{"--from", "OBSTACLES"}, {"LIDAR_SCAN", "NAV_RAW", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
+      {{"--from", "POSE"},
+       {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA", "NAV_RAW", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
       {{"--only", "lidar"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA"}},
       {{"--only", "segmenter"}, {"LIDAR_SCAN", "SEGMENTS"}},
       {{"--only", "navigator"}, {"NAV_RAW", "GNSS_FIX", "ATTITUDE", "POSE"}},
