@@ -288,6 +288,7 @@ class Feed {
     AdvanceAlert(time_s, tracks.end_utime_us);
     if (alert_) alerts.alerts.push_back(*alert_);
     alerts.num_alerts = static_cast<std::int32_t>(alerts.alerts.size());
+    if (alert_ && alert_->state == alert_t::STATE_ACTIVE) alerts.sounding_alert_id = kAlertId;
     bus::Publish(bus_, bus::kAlerts, alerts);
     if (alert_ && alert_->state == alert_t::STATE_CLEARED) alert_.reset();
   }

@@ -117,8 +117,15 @@ class Output:
         if kind in takers:
             takers[kind](time_s, Sentence(line, by_go))
         else:  # which neither library knows
-            check(kind in ('ALF', 'ALR'), 'a sentence that nobody asked for: %s' % line)
-            self.alerts.append(line[7:-3].split(','))
+            fields = line[7:-3].split(',')
+            if kind == 'HBT':
+                check(fields[0] == '30' and fields[1] in ('A', 'V') and fields[2].isdigit(), 'HBT: %s' % line)
+            elif kind == 'ALC':
+                entries = [fields[i:i + 4] for i in range(4, len(fields), 4)]
+                check(len(entries) == int(fields[3]) and all(entry[0] == 'LKO' and len(entry) == 4 for entry in entries), 'ALC: %s' % line)
+            else:
+                check(kind in ('ALF', 'ALR'), 'a sentence that nobody asked for: %s' % line)
+                self.alerts.append(fields)
 
     def take_rmc(self, _, sentence):
         self.own_row = sentence.row(self.truth, 0)
