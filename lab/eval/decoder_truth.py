@@ -1,13 +1,18 @@
 #!/usr/bin/env python3
-"""Compares lookout-lidar with another decoder's point files, on captures of real sensors.
+"""Compares lookout-lidar with other decoders, on captures of real sensors.
 
-decoder_truth.py CLONE: CLONE is a clone of tier4/nebula (Apache-2.0), whose tests hold recordings of Hesai's and Velodyne's sensors (rosbag2) and the
-points that its decoder made of one scan of each (PCD: x, y, z). Needs build/release/bin and Debian's python3-numpy and python3-scipy. Nothing of the
-clone is kept.
+decoder_truth.py CLONE: a clone of tier4/nebula (Apache-2.0) or of ouster-lidar/ouster-sdk (BSD-3). Needs build/release/bin and Debian's python3-numpy
+and python3-scipy. Nothing of the clone is kept.
 
-Of each sensor it tells how many points have a return of ours at the same place: Hesai by x, y, z. Of Velodyne by ring and range alone, and how far
+nebula: its tests hold recordings of Hesai's and Velodyne's sensors (rosbag2) and the points that its decoder made of one scan of each (PCD: x, y, z).
+Of each sensor it is told how many points have a return of ours at the same place: Hesai by x, y, z. Of Velodyne by ring and range alone, and how far
 the azimuths differ: that decoder leaves out by how much the head turns between the lasers of a block.
+
+ouster-sdk: its tests hold captures with the MD5 of the scan's ranges. The packets that lookout-lidar logged must give it, and the scan that it made must
+hold those ranges, to half of its unit.
 """
+import hashlib
+import json
 import pathlib
 import subprocess
 import sys
@@ -15,6 +20,9 @@ import tempfile
 
 import numpy as np
 from scipy.spatial import cKDTree
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "python"))
+import lookout
 
 # Sensor: model of lidar.txtpb, folder of its recording, file of its beams.
 HESAI = {
@@ -41,18 +49,21 @@ def points_of(file):
     return np.stack([points[name].astype(float) for name in layout.names[:3]], axis=1)
 
 
-def returns_of(folder, model, beam_file, recording):
-    """Ring, azimuth (deg, clockwise), range (m), x, y, z of every return."""
-    config = f"model: {model} position_port: 10110\n"
+def run(program, *words):
+    subprocess.run([f"build/release/bin/lookout-{program}", *words], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def configure(folder, lines, beam_file):
     if beam_file:
-        (folder / "angles.csv").write_bytes(beam_file.read_bytes())
-        config += 'beam_file: "angles.csv"\n'
-    (folder / "lidar.txtpb").write_text(config)
+        (folder / "beams").write_bytes(beam_file.read_bytes())
+        lines += ' beam_file: "beams"'
+    (folder / "lidar.txtpb").write_text(lines + "\n")
     (folder / "boat.txtpb").write_text(pathlib.Path("config/demo/boat.txtpb").read_text())
 
-    def run(program, *words):
-        subprocess.run([f"build/release/bin/lookout-{program}", *words], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
+def returns_of(folder, model, beam_file, recording):
+    """Ring, azimuth (deg, clockwise), range (m), x, y, z of every return."""
+    configure(folder, f"model: {model} position_port: 10110", beam_file)
     run("import", "--config", folder, "--in", recording, "--out", folder / "packets")
     run("replay", "--config", folder, "--only", "lidar", "--in", folder / "packets", "--out", folder / "scans")
     run("export", "--in", folder / "scans", "--table", "returns", "--out", folder / "returns.csv")
@@ -94,10 +105,54 @@ def compare_rings(points, returns):
             f"azimuth to {np.concatenate(apart_deg).max():.3f} deg")
 
 
+# Bytes of a packet's head, of a column's head and tail and of a pixel, the bits of its range, and their unit in mm.
+LAYOUTS = {None: (0, 16, 4, 12, 0xFFFFF, 1), "RNG19_RFL8_SIG16_NIR16": (32, 12, 0, 12, 0x7FFFF, 1),
+           "RNG19_RFL8_SIG16_NIR16_DUAL": (32, 12, 0, 16, 0x7FFFF, 1), "RNG15_RFL8_NIR8": (32, 12, 0, 4, 0x7FFF, 8)}
+
+
+def compare_digest(folder, capture, metadata_file):
+    metadata = json.loads(metadata_file.read_text())
+    layout = metadata.get("lidar_data_format") or metadata["data_format"]
+    beams = metadata.get("beam_intrinsics", metadata)["beam_altitude_angles"]
+    head, column_head, tail, pixel, mask, unit_mm = LAYOUTS[layout.get("udp_profile_lidar")]
+    configure(folder, f'model: MODEL_OUSTER source: CAPTURE capture_file: "{capture.resolve()}" data_port: 7502 position_port: 7503', metadata_file)
+    run("replay", "--config", folder, "--only", "lidar", "--in", capture, "--out", folder / "scans")
+    range_mm = np.zeros((len(beams), layout["columns_per_frame"]), np.uint32)
+    column_bytes = column_head + pixel * len(beams) + tail
+    for _, message in lookout.messages(folder / "scans", "LIDAR_PACKETS"):
+        payload, begin = bytes(np.asarray(message.payload, np.uint8)), 0
+        for port, size in zip(message.udp_port, message.size_bytes):
+            packet, begin = payload[begin : begin + size], begin + size
+            for k in range(layout["columns_per_packet"] if port == 7502 else 0):
+                at = head + k * column_bytes
+                words = [int.from_bytes(packet[at + column_head + pixel * i :][:4], "little") for i in range(len(beams))]
+                range_mm[:, int.from_bytes(packet[at + 8 : at + 10], "little")] = [(word & mask) * unit_mm for word in words]
+    digest = hashlib.md5(range_mm.tobytes()).hexdigest()
+    off, num_returns = 0.0, 0
+    from_below = np.argsort(beams, kind="stable")
+    for _, scan in lookout.messages(folder / "scans", "LIDAR_SCAN"):
+        cells = np.asarray(scan.range, np.uint16).reshape(-1, scan.num_rings, scan.num_returns)[:, :, 0] * (1000 * scan.range_unit_m)
+        columns = np.round(np.asarray(scan.azimuth_rad) / (2 * np.pi) * range_mm.shape[1]).astype(int) % range_mm.shape[1]
+        off = max(off, np.abs(cells - range_mm[from_below][:, columns].T).max() / (1000 * scan.range_unit_m))
+        num_returns += np.count_nonzero(cells)
+    return digest, f"{num_returns} of {np.count_nonzero(range_mm)} ranges in LIDAR_SCAN, off by {off:.2f} of its unit at most"
+
+
+def compare_ouster(clone):
+    for digest_file in sorted(clone.glob("tests/pcaps/*_digest.json")):
+        name = digest_file.name.removesuffix("_digest.json")
+        with tempfile.TemporaryDirectory() as made:
+            digest, scan = compare_digest(pathlib.Path(made), digest_file.with_name(name + ".pcap"), digest_file.with_name(name + ".json"))
+        wanted = json.loads(digest_file.read_text())["scans"][0]["RANGE"]
+        print(f"{name}: MD5 of its ranges {'equal' if digest == wanted else 'DIFFERENT'}; {scan}")
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     clone = pathlib.Path(sys.argv[1])
+    if (clone / "tests/pcaps").is_dir():
+        return compare_ouster(clone)
     for sensor, (model, name, beams) in {**HESAI, **VELODYNE}.items():
         folder = next(clone.glob(f"src/*/*/test_resources/decoder_ground_truth/{name}"))
         recording = next(path for path in sorted(folder.glob("*/*.db3")) if "all_points" not in path.name)
