@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -129,6 +130,14 @@ inline std::string WordsOf(std::span<const Word> words, int bits) {
     bits &= ~word.code;
   }
   if (bits != 0) add("undefined");
+  return text;
+}
+
+/// Nine digits.
+inline std::string MmsiText(std::int32_t mmsi) {
+  constexpr std::size_t kDigits = 9;
+  auto text = std::to_string(mmsi);
+  text.insert(0, text.size() < kDigits ? kDigits - text.size() : 0, '0');
   return text;
 }
 

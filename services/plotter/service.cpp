@@ -152,8 +152,9 @@ void Service::ComposeTargets() {
     }
     if (target.tcpa_s > 0.0) target.tcpa_s = std::max(0.0, target.tcpa_s - ahead_s);
     if (const auto level = levels.find(track.id); level != levels.end() && track.id != 0) target.level = level->second;
-    // The receiver has her by AIS. What an alert tells of must be there all the same.
-    if (ship != nullptr && !params_.sends_ais_targets && target.level == Level::kNone) targets.pop_back();
+    // The receiver has her by AIS. What is dangerous must be there all the same, and what AIS may have dropped.
+    const bool is_on_air = ship != nullptr && ships_->on_air.contains(track.id);
+    if (is_on_air && !params_.sends_ais_targets && !IsDangerous(target)) targets.pop_back();
   }
   std::set<std::int64_t> ids;
   for (const auto& target : targets) ids.insert(target.id);

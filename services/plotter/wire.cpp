@@ -11,6 +11,7 @@
 #include "common/core/pose.hpp"
 #include "common/core/printable.hpp"
 #include "common/messages/alert_sound.hpp"
+#include "common/messages/words.hpp"
 
 namespace lookout::plotter {
 
@@ -21,8 +22,12 @@ constexpr double kMostSpeedMps = 1000.0;
 constexpr double kMostLengthM = 1e5;
 constexpr double kMostTcpaS = 1e6;
 constexpr std::size_t kMostTextBytes = 1000;
-constexpr std::size_t kMmsiDigits = 9;
 constexpr std::int64_t kMostAlertId = 1'000'000'000'000'000;
+
+// Longer than the usual intervals of reports (M.1371-5, annex 1, table 1), so that receivers still show the ship.
+constexpr double kUnderWayMps = 1.0;
+constexpr std::int64_t kReportsUnderWayUs = 60'000'000;
+constexpr std::int64_t kReportsAtRestUs = 240'000'000;
 
 bool IsWithin(double value, double min, double max) { return value >= min && value <= max; }  // NaN is not
 bool IsWithinOrUnknown(double value, double min, double max) { return std::isnan(value) || IsWithin(value, min, max); }
@@ -171,9 +176,11 @@ std::optional<ShipNames> ToShipNames(const ais_t& message) {
   ShipNames names{*time, *begin, {}};
   for (const auto& ship : message.ships) {
     if (ship.state != ais_ship_t::STATE_TRACKED) continue;
-    auto number = std::to_string(ship.mmsi);
-    number.insert(0, number.size() < kMmsiDigits ? kMmsiDigits - number.size() : 0, '0');
-    names.name_of_track[ship.track_id] = lookout::IsName(ship.name) ? ship.name : "MMSI " + number;
+    names.name_of_track[ship.track_id] = lookout::IsName(ship.name) ? ship.name : "MMSI " + words::MmsiText(ship.mmsi);
+    const auto most_us = ship.report_speed_mps > kUnderWayMps ? kReportsUnderWayUs : kReportsAtRestUs;
+    std::int64_t age_us = 0;
+    const bool is_known = !__builtin_sub_overflow(message.end_utime_us, ship.arrival_utime_us, &age_us);
+    if (is_known && age_us < most_us) names.on_air.insert(ship.track_id);
   }
   return names;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -58,6 +59,8 @@ struct ShipNames {
   Utime time;                // as TracksPart::time
   Utime tracks_begin;        // as TracksPart::begin
   GivenNames name_of_track;  // her name, else "MMSI 211000001"
+  // Whose report is so new that every receiver of AIS still has her.
+  std::set<std::int64_t> on_air = {};
 };
 /// nullopt: a time does not exist.
 std::optional<ShipNames> ToShipNames(const ais_t& message);

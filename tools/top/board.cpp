@@ -15,6 +15,7 @@
 #include "common/core/angles.hpp"
 #include "common/core/printable.hpp"
 #include "common/messages/alert_sound.hpp"
+#include "common/messages/words.hpp"
 #include "tools/diff/fields.hpp"
 
 namespace lookout::top {
@@ -216,7 +217,7 @@ void Board::MarkShips() {
     if (ship.state != ais_ship_t::STATE_TRACKED) continue;
     const auto line = std::ranges::lower_bound(tracks_->lines, ship.track_id, {}, &TrackLine::id);
     if (line == tracks_->lines.end() || line->id != ship.track_id) continue;
-    line->ship = ship.name.empty() ? std::to_string(ship.mmsi) : Printable(ship.name);
+    line->ship = ship.name.empty() ? words::MmsiText(ship.mmsi) : Printable(ship.name);
   }
 }
 

@@ -171,13 +171,14 @@ void Association::AddEvidence(const Key& key, double probability, double step_s)
 
 // One ship, one track: what was sure of either before is not any more.
 void Association::MakeSure(const Key& key) {
-  for (auto& [other, pair] : pairs_) {
-    if (!pair.is_sure || (other.first != key.first && other.second != key.second)) continue;
+  std::erase_if(sure_track_, [&](const auto& other) {
+    if (other.first != key.first && other.second != key.second) return false;
     ++counts_["pairs_given_up"];
+    auto& pair = pairs_[other];
     pair.is_sure = false;
     pair.evidence = 0.0;
-    sure_track_.erase(other.first);
-  }
+    return true;
+  });
   auto& pair = pairs_[key];
   pair.is_sure = true;
   pair.evidence = kFirstEvidence;

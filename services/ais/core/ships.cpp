@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
@@ -61,6 +62,8 @@ double DistanceM(const PositionReport& one, const PositionReport& other) {
   return Hypot(north_m, east_m);
 }
 
+bool IsVessel(Sender sender) { return sender == Sender::kClassA || sender == Sender::kClassB; }
+
 bool IsUnderWay(const Ship& ship) { return ship.fix && ship.fix->report.speed_mps > kUnderWayMps; }
 
 seconds LongestSilence(const Ship& ship) {
@@ -74,6 +77,7 @@ Ship::Fix TimedFix(const PositionReport& report, Utime arrival) {
   if (report.second < 0 || report.second >= kSecondUnknown) return fix;
   Utime time = std::chrono::floor<std::chrono::minutes>(arrival) + seconds(report.second);
   if (time > arrival + kMostFuture) time -= std::chrono::minutes(1);
+  if (arrival - time >= std::chrono::minutes(1) - kMostFuture) time += std::chrono::minutes(1);
   if (arrival - time > kMostLatency) return fix;
   fix.time = std::min(time, arrival);
   fix.is_time_known = true;
@@ -186,7 +190,10 @@ std::optional<PredictedShip> Predict(const Ship& ship, const LocalFrame& map, Ut
 void Ships::Add(const Message& message, bool is_own, Utime arrival) {
   if (is_own) {
     ++counts_["reports_own"];
+    // A base station tells its own reports by VDO, too, and a line of another's receiver may come once.
+    if (!IsVessel(message.sender)) return;
     told_own_mmsi_ = message.mmsi;
+    own_heard_ = arrival;
     if (configured_own_mmsi_ == 0) ships_.erase(message.mmsi);
     return;
   }
@@ -199,7 +206,9 @@ void Ships::Add(const Message& message, bool is_own, Utime arrival) {
   if (found == ships_.end()) {
     if (ships_.size() >= kMostShips) {
       ++counts_["ships_over_limit"];
-      const auto oldest = std::ranges::min_element(ships_, {}, [](const auto& entry) { return entry.second.heard; });
+      // First those without a place.
+      const auto oldest =
+          std::ranges::min_element(ships_, {}, [](const auto& entry) { return std::pair(entry.second.fix.has_value(), entry.second.heard); });
       doubted_.erase(oldest->first);
       ships_.erase(oldest);
     }
@@ -208,7 +217,9 @@ void Ships::Add(const Message& message, bool is_own, Utime arrival) {
   }
   auto& ship = found->second;
   ship.heard = arrival;
-  if (message.sender != Sender::kUnknown) ship.sender = message.sender;
+  // Ships are what their positions say; a message of another kind under the number of a vessel does not make her a base station.
+  const bool is_kept = IsVessel(ship.sender) && (!message.position || !IsVessel(message.sender));
+  if (message.sender != Sender::kUnknown && !is_kept) ship.sender = message.sender;
   if (message.sender == Sender::kAid) ship.is_virtual = message.is_virtual;
   // "Not available" takes nothing back that was known.
   const auto& facts = message.facts;
@@ -226,7 +237,7 @@ void Ships::AddPosition(Ship& ship, const PositionReport& report, Utime arrival)
   }
   const auto fix = TimedFix(report, arrival);
   // Relayed late, or heard by two receivers. The long-range message is coarse: it says nothing beside the others.
-  const bool is_coarser = ship.fix && report.resolution_m > ship.fix->report.resolution_m && arrival - ship.fix->arrival < kSilenceUnderWay;
+  const bool is_coarser = ship.fix && report.resolution_m > ship.fix->report.resolution_m && arrival - ship.fix->arrival < LongestSilence(ship);
   if (is_coarser || (ship.fix && fix.is_time_known && ship.fix->is_time_known && fix.time <= ship.fix->time)) {
     ++counts_["reports_old"];
     return;
@@ -264,12 +275,24 @@ void Ships::AdvanceTo(Utime time) {
     return true;
   });
   counts_["ships_silent"] += static_cast<std::int64_t>(num_silent);
+  // What else they say makes an old place no newer.
+  for (auto& [mmsi, ship] : ships_) {
+    if (!ship.fix || time - ship.fix->arrival <= LongestSilence(ship)) continue;
+    ++counts_["positions_silent"];
+    ship.fix.reset();
+    doubted_.erase(mmsi);
+  }
+  if (own_heard_ && time - *own_heard_ > kSilenceAtRest) {
+    told_own_mmsi_ = 0;
+    own_heard_.reset();
+  }
 }
 
 void Ships::Clear() {
   ships_.clear();
   doubted_.clear();
   told_own_mmsi_ = 0;
+  own_heard_.reset();
 }
 
 }  // namespace lookout::ais

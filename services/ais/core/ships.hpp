@@ -28,7 +28,7 @@ struct Ship {
   Dimensions dimensions;
   Utime heard;  // arrival of its last message
 
-  // The last position, with course, speed and heading as they were then. Absent: it never told one.
+  // The last position, with course, speed and heading as they were then. Absent: it has told none for long.
   struct Fix {
     PositionReport report;
     Utime arrival;
@@ -67,7 +67,7 @@ GeodeticPlace PropagatedPlace(const Ship::Fix& fix, Utime time);
 /// Depends on the messages and their times alone.
 class Ships {
  public:
-  /// Beyond, the ship that was heard least lately is forgotten. A busy strait has some hundreds in reach.
+  /// Beyond, the ship that was heard least lately is forgotten, first of those without a place. A busy strait has some hundreds in reach.
   static constexpr std::size_t kMostShips = 2000;
   /// Of a report that does not tell its second.
   static constexpr std::chrono::milliseconds kUsualLatency{2000};
@@ -78,7 +78,7 @@ class Ships {
   /// @param is_own  from the own transponder (VDO): never a target
   void Add(const Message& message, bool is_own, Utime arrival);
 
-  /// Forgets ships that have been silent for longer than their class may be.
+  /// Forgets ships that have been silent for longer than their class may be, and positions that are as old.
   void AdvanceTo(Utime time);
 
   void Clear();
@@ -102,11 +102,13 @@ class Ships {
   void AddPosition(Ship& ship, const PositionReport& report, Utime arrival);
   bool IsBelieved(const Ship& ship, const Ship::Fix& fix);
 
-  static constexpr auto kCountNames = std::to_array<std::string_view>({"reports_taken", "reports_own", "reports_old", "reports_without_position",
-                                                                       "reports_jumped", "ships_moved", "ships_silent", "ships_over_limit"});
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"reports_taken", "reports_own", "reports_old", "reports_without_position", "reports_jumped", "ships_moved",
+                                       "ships_silent", "positions_silent", "ships_over_limit"});
 
   std::int32_t configured_own_mmsi_;
   std::int32_t told_own_mmsi_ = 0;
+  std::optional<Utime> own_heard_;      // by VDO
   std::map<std::int32_t, Ship> ships_;  // by MMSI: order decides nothing else
   std::map<std::int32_t, Doubted> doubted_;
   Counts<kCountNames> counts_;

@@ -121,6 +121,13 @@ void Watcher::Tell(const TracksOfScan& scan, const Pose& own, Picture& picture) 
     picture.ships.push_back(std::move(told));
   }
 
+  if (in_reach.size() > kMostCompared) {
+    counts_["ships_not_compared"] += static_cast<std::int64_t>(in_reach.size() - kMostCompared);
+    const auto range_m = [&own](const ShipInReach& one) { return (one.predicted.center_map_m - own.position_map_m.head<2>()).norm(); };
+    std::ranges::stable_sort(in_reach, {}, range_m);
+    in_reach.resize(kMostCompared);
+    std::ranges::sort(in_reach, {}, [](const ShipInReach& one) { return one.ship->mmsi; });
+  }
   const auto identities = association_.Update(scan.end_time, in_reach, scan.tracks);
   std::erase_if(unseen_s_, [&](const auto& entry) { return !std::ranges::binary_search(identities, entry.first, {}, &Identity::mmsi); });
   for (std::size_t i = 0; i < identities.size(); ++i) {

@@ -73,7 +73,9 @@ class Watcher {
  public:
   /// Ships farther from the boat are no tracks of a lidar.
   static constexpr double kReachM = 500.0;
-  /// The nearest are told, so that a message is not too large.
+  /// The nearest are compared, so that a flood of false ships does not hold up the rest.
+  static constexpr std::size_t kMostCompared = 100;
+  /// The nearest are told, so that a message is not too large; where the own place is not known, those with the least MMSI.
   static constexpr std::size_t kMostTold = 200;
 
   explicit Watcher(const WatcherParams& params) : params_(params), ships_(params.own_mmsi), association_(params.association) {}
@@ -102,7 +104,7 @@ class Watcher {
 
   static constexpr auto kCountNames =
       std::to_array<std::string_view>({"messages_understood", "messages_other", "messages_too_short", "messages_bad_mmsi", "messages_bad_place",
-                                       "messages_bad_part", "ships_untold"});
+                                       "messages_bad_part", "ships_untold", "ships_not_compared"});
 
   WatcherParams params_;
   PartJoiner joiner_;

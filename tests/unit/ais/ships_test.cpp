@@ -44,6 +44,9 @@ TEST(AisShips, TheSecondOfAReportTellsItsLatency) {
   // A second ahead is the rounding of two clocks.
   ships.Add(At(0, 0, 21), false, kNoon + 60s);
   EXPECT_EQ(ships.ships().at(211000001).fix->time, kNoon + 60s);
+  // The same over the full minute.
+  ships.Add(At(0, 0, 1), false, kNoon + 99s + 500ms);
+  EXPECT_EQ(ships.ships().at(211000001).fix->time, kNoon + 99s + 500ms);
 }
 
 TEST(AisShips, WithoutASecondTheUsualLatencyCounts) {
@@ -177,6 +180,62 @@ TEST(AisShips, NotAvailableTakesNothingBack) {
   EXPECT_EQ(ship.ship_type, 70);
   EXPECT_EQ(ship.dimensions.length_m(), 20.0);
   EXPECT_TRUE(ship.fix);
+}
+
+// Who goes on sending her name, or that her receiver has no fix, was shown where she had been for hours.
+TEST(AisShips, AnOldPlaceIsNotKeptByWhatElseIsSaid) {
+  for (const bool tells_no_fix : {false, true}) {
+    Ships ships(0);
+    ships.Add(At(0, 0, 20, 10.0), false, kNoon);
+    for (int minute = 1; minute <= 5; ++minute) {
+      auto message = At(0, 0, 60);
+      if (tells_no_fix) message.position->latitude_deg = message.position->longitude_deg = kNan;
+      if (!tells_no_fix) message.position.reset();
+      ships.AdvanceTo(kNoon + std::chrono::minutes(minute));
+      ships.Add(message, false, kNoon + std::chrono::minutes(minute));
+    }
+    EXPECT_FALSE(ships.ships().at(211000001).fix) << tells_no_fix;
+    EXPECT_EQ(CountOf(ships, "positions_silent"), 1);
+  }
+}
+
+TEST(AisShips, AStrayVdoHidesNobodyForLongAndABaseStationIsNotTheOwnShip) {
+  Ships ships(0);
+  ships.Add(At(0, 0, 20), true, kNoon);
+  ships.Add(At(0, 0, 21), false, kNoon + 1s);
+  EXPECT_TRUE(ships.ships().empty());
+  ships.AdvanceTo(kNoon + 11min);
+  ships.Add(At(0, 0, 20), false, kNoon + 11min);
+  EXPECT_EQ(ships.ships().size(), 1U);
+  auto base = At(0, 0, 20);
+  base.sender = Sender::kBase;
+  ships.Add(base, true, kNoon + 12min);
+  EXPECT_EQ(ships.own_mmsi(), 0);
+}
+
+TEST(AisShips, AMessageOfAnotherKindMakesNoBaseStationOfAShip) {
+  Ships ships(0);
+  ships.Add(At(0, 0, 20), false, kNoon);
+  auto other = At(0, 0, 25);
+  other.sender = Sender::kBase;
+  ships.Add(other, false, kNoon + 5s);
+  EXPECT_EQ(ships.ships().at(211000001).sender, Sender::kClassA);
+  auto name = At(0, 0, 60);
+  name.sender = Sender::kClassB;
+  name.position.reset();
+  ships.Add(name, false, kNoon + 6s);
+  EXPECT_EQ(ships.ships().at(211000001).sender, Sender::kClassA);
+}
+
+TEST(AisShips, ACoarsePlaceDoesNotReplaceThatOfAShipAtRest) {
+  Ships ships(0);
+  ships.Add(At(0, 0, 20), false, kNoon);
+  auto coarse = At(100, 0, 60);
+  coarse.position->resolution_m = 185.0;
+  ships.Add(coarse, false, kNoon + 149s);
+  EXPECT_LT(ships.ships().at(211000001).fix->report.resolution_m, 1.0);
+  ships.Add(coarse, false, kNoon + 11min);
+  EXPECT_EQ(ships.ships().at(211000001).fix->report.resolution_m, 185.0);
 }
 
 }  // namespace

@@ -83,6 +83,7 @@ ais_t AisOf(std::int64_t track_id, const std::string& name, std::int64_t end_us,
   ship.name = name;
   ship.state = ais_ship_t::STATE_TRACKED;
   ship.track_id = track_id;
+  ship.arrival_utime_us = end_us;
   return message;
 }
 
@@ -113,6 +114,22 @@ TEST_F(PlotterService, LeavesShipsOutForAPlotterThatHasAis) {
   Run(1'000'000);
   EXPECT_TRUE(signal_k_->With("gannet-17").empty());
   EXPECT_FALSE(signal_k_->With("gannet-18").empty());
+  // What AIS may have dropped is there, and what comes near, with an alert or before it.
+  const auto is_sent = [this](auto&& change) {
+    signal_k_->sent.clear();
+    auto ais = AisOf(17, "EVEREST", host_us_ + 200'000, begin_us_);
+    tracks_ = {MakeTrack(17), MakeTrack(18)};
+    change(ais.ships[0], tracks_[0]);
+    support::Send(*bus_, bus::kAis, ais);
+    Run(1'000'000);
+    return signal_k_->sent.end() != std::ranges::find_if(signal_k_->sent, [](const auto& text) {
+             return text.find("gannet-17") != std::string::npos && text.find("\"latitude\"") != std::string::npos;
+           });
+  };
+  EXPECT_TRUE(is_sent([](auto& ship, auto&) { ship.arrival_utime_us -= 300'000'000; }));
+  EXPECT_FALSE(is_sent([](auto&, auto&) {}));
+  EXPECT_TRUE(is_sent([](auto&, auto& track) { track.cpa_probability = 0.9F; }));
+  EXPECT_FALSE(is_sent([](auto&, auto&) {}));
   // What an alert tells of is there.
   alerts_ = {MakeAlert(3)};
   alerts_[0].track_id = 17;

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fillColours, kRamps, luminance, parseColour, rampColour, distinctColour, rampOf, standingOut, type Theme } from "../src/drawing/colours.js";
 import { blindSectors } from "../src/drawing/blind.js";
-import { placeFor, within } from "../src/drawing/labels.js";
+import { drawLabels, placeFor, within } from "../src/drawing/labels.js";
 import { lookAt, perspective, product, project } from "../src/drawing/matrix.js";
 import { gridStep, latitudeOf, longitudeOf, mercatorX, mercatorY, offset, position, widthAt, zoomFor } from "../src/drawing/mercator.js";
 import { ringStep } from "../src/drawing/own_boat.js";
@@ -162,6 +162,16 @@ test("a label goes to the next side that is free, or nowhere", () => {
   assert.equal(placeFor(label, 60, 20, size, [{ x: 120, y: 95, width: 10, height: 10 }])?.x, 30);
   assert.equal(placeFor(label, 60, 20, size, [{ x: 0, y: 0, width: 200, height: 200 }]), null);
   assert.equal(placeFor({ ...label, x_px: 190 }, 60, 20, size, [])?.x, 120);
+});
+test("labels that must be drawn are drawn whatever stands before them", () => {
+  const written: string[] = [], none = () => undefined;
+  const context = { measureText: () => ({ width: 6 }), strokeText: none, beginPath: none, roundRect: none, fill: none, fillText: (text: string) => { written.push(text); } };
+  const plain = (i: number) => ({ x_px: 100, y_px: 40 * i, radius_px: 4, lines: [`ship ${i}`], colour: "", isBoxed: false });
+  const alert = { ...plain(20), lines: ["boat 17"], isBoxed: true, shorter: [["17"]] };
+  const sheet = { width_px: 400, height_px: 2000, covered: [] }, theme = { css: { panel: "", water: "" } };
+  drawLabels(context as never, [...Array(10).keys()].map(plain).concat(alert as never), theme as never, sheet, 8, []);
+  assert.equal(written.length, 9);
+  assert.equal(written.at(-1), "boat 17");
 });
 test("a label that must be drawn lies over marks and other labels, but not under a button", () => {
   const label = { x_px: 170, y_px: 100, radius_px: 4 }, sheet = { width_px: 200, height_px: 400, covered: [{ x: 90, y: 60, width: 110, height: 80 }] };

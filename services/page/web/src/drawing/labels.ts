@@ -33,7 +33,7 @@ function widthOf(context: CanvasRenderingContext2D, text: string): number {
 /** What labels are drawn on. `covered`: there something lies over it, so that nothing can be read. */
 export interface Sheet { width_px: number; height_px: number; covered: readonly Box[] }
 
-/** Draws labels in their order, at most `most`. `taken` holds boxes that nothing may cover, and gets those that were drawn. */
+/** Draws labels in their order, at most `most`, but for those that must be drawn (`shorter`). `taken` holds boxes that nothing may cover, and gets those that were drawn. */
 export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], theme: Theme, sheet: Sheet, most: number, taken: Box[]): void {
   context.font = kFont;
   context.textBaseline = "middle";
@@ -42,7 +42,7 @@ export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], t
   const drawn: Box[] = [];
   taken.push(...sheet.covered);
   for (const label of labels) {
-    if (drawn.length >= most) return;
+    if (drawn.length >= most && label.shorter === undefined) continue;
     const fit = [label.lines, ...(label.shorter ?? [])].map((lines) => {
       const width = Math.max(...lines.map((line) => widthOf(context, line))) + 10, height = kLine_px * lines.length + 4;
       return { lines, width, height, box: placeFor(label, width, height, sheet, taken) };
