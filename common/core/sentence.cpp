@@ -47,6 +47,12 @@ std::string_view WithoutSpacesAround(std::string_view text) {
   return text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
+unsigned ChecksumOf(std::string_view body) {
+  unsigned checksum = 0;
+  for (const char character : body) checksum ^= static_cast<unsigned char>(character);
+  return checksum;
+}
+
 // Behind the digits there may be blanks.
 bool IsChecksumOf(std::string_view digits, std::string_view body) {
   while (!digits.empty() && (digits.back() == ' ' || digits.back() == '\t')) digits.remove_suffix(1);
@@ -54,12 +60,16 @@ bool IsChecksumOf(std::string_view digits, std::string_view body) {
   unsigned stated = 0;
   const auto* const end = digits.data() + digits.size();
   const bool is_hexadecimal = std::from_chars(digits.data(), end, stated, 16).ptr == end;
-  unsigned checksum = 0;
-  for (const char character : body) checksum ^= static_cast<unsigned char>(character);
-  return is_hexadecimal && stated == checksum;
+  return is_hexadecimal && stated == ChecksumOf(body);
 }
 
 }  // namespace
+
+std::string WithChecksum(std::string_view body) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  const auto checksum = ChecksumOf(body);
+  return "$" + std::string(body) + "*" + kDigits[checksum >> 4] + kDigits[checksum & 15];
+}
 
 FrameResult Frame(std::string_view line, bool requires_checksum) {
   const auto star = line.rfind('*');

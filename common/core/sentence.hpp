@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +23,9 @@ enum class SentenceFault {
   kBadField,     // a field is missing or does not have its form
   kImplausible,  // a value is out of its range
 };
+
+/// "$" body "*" checksum, without CR LF.
+std::string WithChecksum(std::string_view body);
 
 /// A line whose checksum is right. Views into the line.
 struct FramedSentence {

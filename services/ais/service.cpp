@@ -28,8 +28,8 @@ void Service::OnPose(const pose_t& message) {
 }
 
 void Service::OnTracks(const tracks_t& message) {
-  tracks_watch_.Note();
   if (const auto fault = FaultOf(message); !fault.empty()) return tracks_refused_.Add(fault);
+  tracks_watch_.Note();
   // A scan that lacks a part is left out: a track that is not told would seem to have ended.
   const auto parts = parts_.Add(message).whole;
   if (parts.empty()) return;

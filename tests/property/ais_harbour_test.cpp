@@ -107,7 +107,15 @@ TEST(AisHarbour, TracksAreTheirShips) {
               100.0 * static_cast<double>(tally.without_ais_named) / static_cast<double>(tally.without_ais), wrong_percent,
               static_cast<long long>(tally.ais_only));
   EXPECT_GT(alone.Percent(alone.right), 90.0);
-  EXPECT_LT(wrong_percent, 0.5);
+  EXPECT_LT(wrong_percent, 0.3);
+  for (const auto& count : tally.of_place) EXPECT_LT(count.Percent(count.wrong), 1.0);
+  const auto right = [&tally](test::Place place) {
+    const auto& count = tally.of_place.at(static_cast<std::size_t>(place));
+    return count.Percent(count.right);
+  };
+  EXPECT_GT(right(test::Place::kEncounter), 95.0);
+  EXPECT_GT(right(test::Place::kAtQuay), 70.0);
+  EXPECT_LT(tally.ais_only, all.all() / 1000) << "told as unseen though it is tracked";
 }
 
 }  // namespace

@@ -9,17 +9,11 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
+#include "common/core/sentence.hpp"
 
 namespace lookout::importer {
 
 namespace {
-
-// "$" body "*" checksum
-std::string WithChecksum(const std::string& body) {
-  unsigned sum = 0;
-  for (const char letter : body) sum ^= static_cast<unsigned char>(letter);
-  return fmt::format("${}*{:02X}", body, sum);
-}
 
 std::string SentenceTime(Utime time) {
   const auto of_day = time - std::chrono::floor<std::chrono::days>(time);

@@ -45,11 +45,7 @@ std::string ToSentence(const OdometryMotion& motion) {
     body += Field(motion.displacement_m.x(), 6) + Field(motion.displacement_m.y(), 6) + Field(motion.turn_rad, 9);
     for (const auto& [row, column] : kUpper) body += Field(motion.covariance(row, column), 12);
   }
-  unsigned sum = 0;
-  for (const char character : body) sum ^= static_cast<unsigned char>(character);
-  std::array<char, 8> end{};
-  std::snprintf(end.data(), end.size(), "*%02X", sum & 0xFFU);
-  return "$" + body + end.data();
+  return WithChecksum(body);
 }
 
 std::optional<OdometryMotion> ParseOdometry(std::string_view line) {

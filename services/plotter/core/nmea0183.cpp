@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "common/core/sentence.hpp"
 
 namespace lookout::plotter {
 
@@ -88,11 +89,7 @@ std::string TimeOfDay(Utime time) {
   return fmt::format("{:02}{:02}{:02}.{:02}", parts.hours().count(), parts.minutes().count(), parts.seconds().count(), parts.subseconds() / 10ms);
 }
 
-std::string Sentence(std::string_view body) {
-  unsigned checksum = 0;
-  for (const char letter : body) checksum ^= static_cast<unsigned char>(letter);
-  return fmt::format("${}*{:02X}\r\n", body, checksum);
-}
+std::string Sentence(std::string_view body) { return WithChecksum(body) + "\r\n"; }
 
 std::string FieldText(std::string_view text, std::size_t max_bytes) {
   constexpr std::string_view kReserved = "$*,!\\^~";

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/core/angles.hpp"
+#include "common/core/sentence.hpp"
 
 namespace lookout::lidar {
 
@@ -30,11 +31,7 @@ std::string ImuSentence(const OusterImu& sample, const Eigen::Matrix3d& R_vessel
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), "VNIMU,0,0,0,%+.4f,%+.4f,%+.4f,%+.6f,%+.6f,%+.6f,0,0", Rounded(force.x(), 1e4), Rounded(force.y(), 1e4),
                 Rounded(force.z(), 1e4), Rounded(rate.x(), 1e6), Rounded(rate.y(), 1e6), Rounded(rate.z(), 1e6));
-  unsigned int checksum = 0;
-  for (const char* letter = text.data(); *letter != '\0'; ++letter) checksum ^= static_cast<unsigned char>(*letter);
-  std::array<char, 4> digits{};
-  std::snprintf(digits.data(), digits.size(), "%02X", checksum);
-  return "$" + std::string(text.data()) + "*" + digits.data();
+  return WithChecksum(text.data());
 }
 
 }  // namespace lookout::lidar
