@@ -16,6 +16,7 @@ constexpr double kUnseenS = 3.0;
 constexpr double kSeenAgainS = 1.0;
 constexpr double kMostUnseenS = 6.0;
 constexpr double kMostScanS = 1.0;
+constexpr std::chrono::seconds kMostWithoutPose{1};
 // Below, a track is no candidate worth telling.
 constexpr double kLeastProbability = 0.1;
 
@@ -29,6 +30,7 @@ void Watcher::Consume(const Item& item) {
     joiner_.Clear();
     ships_.Clear();
     association_.Clear();
+    identities_.clear();
     unseen_s_.clear();
     last_time_.reset();
     has_heard_ = false;
@@ -66,6 +68,7 @@ void Watcher::KeepToMap(const TracksOfScan& scan) {
   const bool is_same = map_ && map_->begin_seq == scan.begin_seq && map_->begin_time == scan.begin_time && map_->datum.IsSameAs(scan.datum);
   if (!is_same) {
     association_.Clear();
+    identities_.clear();
     unseen_s_.clear();
     shore_m_.clear();
     map_ = MapKey{scan.begin_seq, scan.begin_time, scan.datum};
@@ -85,6 +88,8 @@ Picture Watcher::Update(const TracksOfScan& scan, const std::optional<Pose>& own
     return picture;
   }
   picture.status = own ? Status::kNoPosition : Status::kNoPose;
+  // A pair holds over scans whose pose is missing: a name that comes and goes would be read as another ship.
+  const bool is_short = last_time_ && scan.end_time - *last_time_ <= kMostWithoutPose;
   for (const auto& [mmsi, ship] : ships_.ships()) {
     if (!ship.fix) continue;
     if (picture.ships.size() == kMostTold) {
@@ -94,6 +99,12 @@ Picture Watcher::Update(const TracksOfScan& scan, const std::optional<Pose>& own
     auto& told = picture.ships.emplace_back();
     told.ship = ship;
     told.place = PropagatedPlace(*ship.fix, scan.end_time);
+    const auto identity = std::ranges::lower_bound(identities_, mmsi, {}, &Identity::mmsi);
+    const bool is_pair = is_short && identity != identities_.end() && identity->mmsi == mmsi && identity->is_sure;
+    if (!is_pair || !std::ranges::binary_search(scan.tracks, identity->track_id, {}, &TrackedThing::id)) continue;
+    told.state = ShipState::kTracked;
+    told.track_id = identity->track_id;
+    told.probability = identity->probability;
   }
   return picture;
 }
@@ -128,10 +139,10 @@ void Watcher::Tell(const TracksOfScan& scan, const Pose& own, Picture& picture) 
     in_reach.resize(kMostCompared);
     std::ranges::sort(in_reach, {}, [](const ShipInReach& one) { return one.ship->mmsi; });
   }
-  const auto identities = association_.Update(scan.end_time, in_reach, scan.tracks);
-  std::erase_if(unseen_s_, [&](const auto& entry) { return !std::ranges::binary_search(identities, entry.first, {}, &Identity::mmsi); });
-  for (std::size_t i = 0; i < identities.size(); ++i) {
-    const auto& identity = identities[i];
+  identities_ = association_.Update(scan.end_time, in_reach, scan.tracks);
+  std::erase_if(unseen_s_, [&](const auto& entry) { return !std::ranges::binary_search(identities_, entry.first, {}, &Identity::mmsi); });
+  for (std::size_t i = 0; i < identities_.size(); ++i) {
+    const auto& identity = identities_[i];
     auto& told = *std::ranges::lower_bound(picture.ships, identity.mmsi, {}, [](const auto& ship) { return ship.ship.mmsi; });
     const bool may_be_unseen = !identity.is_sure && identity.none_probability >= kNoneProbability;
     const bool should_be_seen = may_be_unseen && ShouldBeSeen(in_reach[i], own, scan.tracks, shore_m_, params_.sight);

@@ -110,6 +110,7 @@ class Watcher {
   PartJoiner joiner_;
   Ships ships_;
   Association association_;
+  std::vector<Identity> identities_;         // of the last scan with a position, by MMSI
   std::map<std::int32_t, double> unseen_s_;  // by MMSI: for how long it should have been seen and was not
   std::vector<Eigen::Vector2d> shore_m_;     // as it was told last
   std::optional<MapKey> map_;                // of the scan before

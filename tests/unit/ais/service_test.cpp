@@ -94,10 +94,14 @@ class AisService : public support::BusTest {
     service_ = std::make_unique<Service>(bus, params);
   }
   // NAV_RAW and POSE to the end of a scan.
-  void Navigate(int number, const std::vector<std::string>& lines = {}) {
+  void Navigate(int number, const std::vector<std::string>& lines = {}, std::int32_t status = pose_t::STATUS_OK) {
     auto utime_us = kStartUs + number * kScanUs;
     for (const auto& line : lines) Send(bus::kNavRaw, MakeRaw(++utime_us, nav_raw_t::KIND_SENTENCE, line));
-    for (int i = 1; i <= 5; ++i) Send(bus::kPose, MakePose(kStartUs + number * kScanUs + i * 20'000));
+    for (int i = 1; i <= 5; ++i) {
+      auto pose = MakePose(kStartUs + number * kScanUs + i * 20'000);
+      pose.status = status;
+      Send(bus::kPose, pose);
+    }
     Send(bus::kNavRaw, MakeRaw(kStartUs + (number + 1) * kScanUs, nav_raw_t::KIND_TICK));
   }
 
@@ -187,6 +191,26 @@ TEST_F(AisService, WithoutAPlaceOnTheEarthItSaysWhyNothingIsCompared) {
   EXPECT_EQ(told_.back().ships[0].state, std::int32_t{ais_ship_t::STATE_NOT_IN_SIGHT});
   EXPECT_TRUE(std::isnan(told_.back().ships[0].range_m));
   EXPECT_EQ(service_->Report().reason, "position or heading are not known: no track can be told by AIS");
+}
+
+TEST_F(AisService, APairIsToldOnForASecondWithoutAPosition) {
+  for (int i = 0; i < 140; ++i) {
+    std::vector<std::string> lines;
+    if (i % 20 == 6) lines.push_back(ShipLine(211000001, 31.0, 41.0, i / 10));
+    const bool has_position = i != 95 && i < 100;
+    const std::int32_t status = has_position ? std::int32_t{pose_t::STATUS_OK} : std::int32_t{pose_t::STATUS_NO_POSITION};
+    Navigate(i, lines, status);
+    // The track is missing in one of the scans without a position.
+    Send(bus::kTracks, MakeTracks(i, i == 104 ? std::vector<track_t>{} : std::vector{MakeTrack(3, 30.0, 40.0)}));
+  }
+  const auto state_of = [this](int number) {
+    for (const auto& told : told_) {
+      if (told.scan_seq == number) return told.ships.at(0).state;
+    }
+    return std::int32_t{-1};
+  };
+  for (const int number : {94, 95, 96, 99, 100, 103, 105, 109}) EXPECT_EQ(state_of(number), std::int32_t{ais_ship_t::STATE_TRACKED}) << number;
+  for (const int number : {104, 110, 139}) EXPECT_EQ(state_of(number), std::int32_t{ais_ship_t::STATE_NOT_IN_SIGHT}) << number;
 }
 
 TEST_F(AisService, AScanWaitsForSentencesOfBeforeItsEnd) {
