@@ -1,7 +1,5 @@
 #include "services/plotter/n2k_device_output.hpp"
 
-#include <fmt/format.h>
-
 #include <utility>
 
 namespace lookout::plotter {
@@ -41,6 +39,10 @@ void N2kDeviceOutput::SendNotices(const Told& told) {
   // Under another address the targets are new ones.
   if (device_.is_claimed() && !was_claimed_) N2kOutput::SendAnew();
   was_claimed_ = device_.is_claimed();
+  SendOwed();
+}
+
+void N2kDeviceOutput::SendOwed() {
   for (const auto& [message, source] : device_.TakeSendings()) SendSurely(TextFrom(message, source));
 }
 
@@ -62,6 +64,7 @@ Commands N2kDeviceOutput::Read(const std::string& message, const Told& told) {
   if (heard->is_echo) NoteOwnClaim(heard->frame);
   // Of what programs sent through this gateway, claims concern us: another may be a device, too. Our own request would be answered by us.
   if ((!heard->is_echo || ClaimedNameOf(heard->frame)) && !device_.Take(heard->frame, told.passed)) CountRefused();
+  SendOwed();  // at once: others wait for a claim no longer than we do
   return {};
 }
 
@@ -69,12 +72,12 @@ std::string N2kDeviceOutput::fault() const {
   if (auto fault = link().fault(); !fault.empty()) return fault;
   if (owes_begin_) return {};
   if (is_gateway_ && now_ - heard_ > kMostSilence) {
-    return fmt::format("no RAW line has come from the gateway for {} s: its server must speak RAW, in both directions",
-                       std::chrono::floor<std::chrono::seconds>(now_ - heard_).count());
+    return "no RAW line has come from the gateway for " + std::to_string(std::chrono::floor<std::chrono::seconds>(now_ - heard_).count()) +
+           " s: its server must speak RAW, in both directions";
   }
   if (device_.state() == N2kDevice::State::kNoAddress) return "no address of the NMEA 2000 network is free: nothing is sent there";
   if (given_address_ >= 0) {
-    return fmt::format("the gateway sends under its own address {} in place of ours: others take our messages for its own", given_address_);
+    return "the gateway sends under its own address " + std::to_string(given_address_) + " in place of ours: others take our messages for its own";
   }
   return {};
 }

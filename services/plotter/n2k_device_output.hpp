@@ -30,6 +30,7 @@ class N2kDeviceOutput : public N2kOutput {
   int most_read() const override { return 64; }  // all that waits: a busy network sends more than a thousand frames a second
 
   std::string TextFrom(const N2kMessage& message, std::uint8_t source);
+  void SendOwed();
   void NoteOwnClaim(const N2kFrame& frame);
 
   std::uint64_t name_;

@@ -125,9 +125,11 @@ class Trial:
                     print('--- %s' % name)
                     print(self.output(name[:-4])[-2000:])
 
-    def start(self, name, command, **options):
+    def start(self, name, command, pipe=False, **options):
+        """@param pipe  its standard input is written by the trial, as text"""
         out = open(os.path.join(self.folder, name + '.out'), 'w', encoding='utf-8')
-        process = subprocess.Popen(command, stdout=out, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, **options)
+        stdin = subprocess.PIPE if pipe else subprocess.DEVNULL
+        process = subprocess.Popen(command, stdout=out, stderr=subprocess.STDOUT, stdin=stdin, text=pipe, **options)
         self._processes.append(process)
         return process
 
