@@ -156,6 +156,7 @@ class OutputsReader {
     params.target_talker = output.target_talker();
     params.own_ship_talker = output.own_ship_talker();
     params.takes_acknowledgements = output.takes_acknowledgements();
+    params.targets_as_vessels = output.targets_as_vessels();
     params.mavlink = ToMavlink(output.mavlink());
     params.n2k = ToN2k(output, boat_);
     const int num_kinds = static_cast<int>(output.has_udp()) + static_cast<int>(output.has_tcp_server()) + static_cast<int>(output.has_tcp_client()) +
@@ -177,6 +178,7 @@ class OutputsReader {
     Require(!is_device || output.has_tcp_client() || output.has_serial() || output.has_can(),
             "format N2K_DEVICE goes over tcp_client or serial, to a gateway, or over can");
     Require(is_device || (!output.has_can() && !output.has_n2k()), "can and n2k are of format N2K_DEVICE only");
+    Require(!params.targets_as_vessels || params.format == Format::kSignalK, "targets_as_vessels is of format SIGNALK only");
     Require(is_mavlink || !output.has_mavlink(), "mavlink is of format MAVLINK only");
     Require(!params.takes_acknowledgements || !output.has_udp(), "nothing comes back over udp: takes_acknowledgements must be false");
     Require(!params.takes_acknowledgements || is_nmea || params.format == Format::kSignalK, "NMEA 2000 and MAVLink bring no acknowledgements back");
@@ -305,7 +307,7 @@ std::string InWords(const Destination& to) {
 std::string InWords(const OutputParams& output) {
   switch (output.format) {
     case Format::kSignalK:
-      return "Signal K";
+      return output.targets_as_vessels ? "Signal K, targets also as vessels" : "Signal K";
     case Format::kN2kActisense:
       return "NMEA 2000 as Actisense text";
     case Format::kN2kYden:

@@ -57,6 +57,7 @@ struct OutputParams {
   std::string target_talker = "RA";
   std::string own_ship_talker = "II";
   bool takes_acknowledgements = false;
+  bool targets_as_vessels = false;  // Signal K
   MavlinkParams mavlink = {};
   N2kParams n2k = {};
 };

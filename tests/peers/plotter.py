@@ -143,8 +143,8 @@ class Trial:
         check(plotter.poll() is None, 'lookout-plotter ended')
         return plotter
 
-    def start_feed(self, seconds, place):
-        return self.start('feed', [os.path.join(self.build, 'tests/plotter_feed'), str(seconds), self.truth_file, str(place[0]), str(place[1])])
+    def start_feed(self, seconds, place, num_brief=0):
+        return self.start('feed', [os.path.join(self.build, 'tests/plotter_feed'), str(seconds), self.truth_file, str(place[0]), str(place[1]), str(num_brief)])
 
     def run_feed(self, seconds, place):
         code = self.start_feed(seconds, place).wait(seconds + 30)

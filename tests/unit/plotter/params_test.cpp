@@ -76,6 +76,7 @@ TEST_F(PlotterParams, RefuseWhatCannotBe) {
   EXPECT_TRUE(Says("udp { address: '0.0.0.0' port: 2000 }", "must be of a receiver"));
   EXPECT_TRUE(Says("udp { address: '127.0.0.1' port: 2000 } mavlink { system_id: 2 }", "mavlink is of format MAVLINK only"));
   EXPECT_TRUE(Says("websocket { address: '127.0.0.1' }", "a websocket carries format SIGNALK only"));
+  EXPECT_TRUE(Says("udp { address: '127.0.0.1' port: 2000 } targets_as_vessels: true", "targets_as_vessels is of format SIGNALK only"));
   EXPECT_TRUE(Says("serial { device: 'ttyUSB0' baud: 4800 }", "the whole path"));
   EXPECT_TRUE(Says("serial { device: '/dev/ttyUSB0' baud: 4801 }", "none that serial ports have"));
   EXPECT_TRUE(Says("udp { address: '10.0.0.1' port: 2000 } target_talker: 'RAD'", "two capital letters"));
