@@ -16,7 +16,7 @@ void SignalKOutput::SendOwnShip(const Told& told) {
 }
 
 void SignalKOutput::SendTargets(const Told& told) {
-  for (const auto& ended : targets_.TakeEnded(told.targets)) EndTarget(ended.number, told);
+  for (const auto& ended : targets_.TakeEnded(told.targets)) EndTarget(ended, told);
   places_.Keep(told.targets, told.passed);
   for (const auto* target : targets_.Due(told.targets, told.passed)) {
     const int place = places_.Of(target->id, told.passed);
@@ -26,14 +26,16 @@ void SignalKOutput::SendTargets(const Told& told) {
   }
 }
 
-void SignalKOutput::EndTarget(int place, const Told& told) {
-  SendSurely(TargetEndDelta(TargetContext(boat_, place), told.own.time));
-  if (params().targets_as_vessels) SendSurely(TargetEndDelta(VesselContext(boat_, place), told.own.time));
+// Freeboard-SK takes no null for a position, and draws the vessel for minutes where it was last: by its name it says that it is gone.
+void SignalKOutput::EndTarget(const TargetSchedule::Sent& ended, const Told& told) {
+  SendSurely(TargetEndDelta(TargetContext(boat_, ended.number), told.own.time));
+  if (!params().targets_as_vessels) return;
+  SendSurely(TargetEndDelta(VesselContext(boat_, ended.number), told.own.time, "lost: " + TargetName(ended.target)));
 }
 
 // A server shows the last values until it is told otherwise.
 void SignalKOutput::EndTargets(const Told& told) {
-  for (const auto& ended : targets_.TakeEnded({})) EndTarget(ended.number, told);
+  for (const auto& ended : targets_.TakeEnded({})) EndTarget(ended, told);
 }
 
 void SignalKOutput::SendNotices(const Told& told) {

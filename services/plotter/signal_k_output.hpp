@@ -31,7 +31,7 @@ class SignalKOutput : public Output {
   void SendAnew() override;
   Commands Read(const std::string& message, const Told& told) override;
 
-  void EndTarget(int place, const Told& told);
+  void EndTarget(const TargetSchedule::Sent& ended, const Told& told);
   void EndLeftover(const NoticeEcho& echo, const Told& told);
 
   std::string boat_;

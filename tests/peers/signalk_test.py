@@ -283,6 +283,7 @@ def run_contexts():
         # Two a second, of which each stays for 4 s and then for the minute in which its place is free.
         check(len(targets) <= 150 and abs(len(vessels) - len(targets)) <= 2, '%d targets, %d vessels' % (len(targets), len(vessels)))
         check(10 <= len(names['targets']) <= 18 and len(set(names['targets']) ^ set(names['vessels'])) <= 4, str(names))
+        check(any(vessel['name'].startswith('lost: ') for vessel in vessels.values()), 'those that are gone bear their names')
         feed.wait(30)
         trial.end_plotter(plotter)
         time.sleep(1.0)

@@ -171,9 +171,11 @@ std::string VesselContext(std::string_view boat, int place) {
                      8U | (second >> 60U & 3U), second >> 48U & 0xFFFU, second & 0xFFFF'FFFF'FFFFU);
 }
 
+std::string TargetName(const Target& target) { return target.given_name.empty() ? target.name : PrintableLines(target.given_name); }
+
 std::string TargetDelta(std::string_view context, const Target& target, Utime time) {
   Delta delta(std::string(context), time);
-  delta.Add("", {{"name", target.given_name.empty() ? target.name : PrintableLines(target.given_name)}});
+  delta.Add("", {{"name", TargetName(target)}});
   delta.Add("navigation.position", PositionJson(target.position));
   delta.Add("navigation.courseOverGroundTrue", Angle(target.course_rad));
   delta.Add("navigation.speedOverGround", Number(target.speed_mps, 1e3));
@@ -183,8 +185,9 @@ std::string TargetDelta(std::string_view context, const Target& target, Utime ti
   return delta.Text();
 }
 
-std::string TargetEndDelta(std::string_view context, Utime time) {
+std::string TargetEndDelta(std::string_view context, Utime time, std::string_view new_name) {
   Delta delta(std::string(context), time);
+  if (!new_name.empty()) delta.Add("", {{"name", new_name}});
   for (const char* path : {"navigation.position", "navigation.courseOverGroundTrue", "navigation.speedOverGround", "navigation.closestApproach"})
     delta.Add(path, nullptr);
   return delta.Text();

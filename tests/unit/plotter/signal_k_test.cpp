@@ -73,6 +73,12 @@ TEST(PlotterSignalK, EndsATargetByNulls) {
   EXPECT_TRUE(Values(text).contains("navigation.position"));
 }
 
+TEST(PlotterSignalK, SaysByItsNameThatATargetIsLost) {
+  const auto values = Values(TargetEndDelta(VesselContext("gannet", 3), test::kTime, "lost: boat 17"));
+  EXPECT_EQ(values[""]["name"], "lost: boat 17");
+  EXPECT_TRUE(values["navigation.position"].is_null());
+}
+
 // The form that the specification's schema wants of a vessel without an MMSI.
 TEST(PlotterSignalK, GivesAVesselAUuidOfItsPlace) {
   const std::regex form("vessels\\.urn:mrn:signalk:uuid:[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}");
