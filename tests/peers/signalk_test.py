@@ -260,7 +260,8 @@ def run_way(name):
 
 def is_shown(target_id):
     targets = ask('/signalk/v1/api/targets') or {}
-    return any(id_of(target['name']) == target_id and target['navigation']['position']['value'] for target in targets.values())
+    # A server that begins anew is told the end of one that it never knew.
+    return any('name' in target and id_of(target['name']) == target_id and target['navigation']['position']['value'] for target in targets.values())
 
 
 def run_contexts():
