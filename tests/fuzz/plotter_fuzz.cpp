@@ -62,6 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Notice notice;
   notice.id = static_cast<std::int64_t>(size) + 1;
   notice.text = text;
+  notice.sound = Sound::kSounds;
   if (Alr("RA", notice, {}).size() > kMaxSentenceBytes) std::abort();
   const auto alf = Alf("RA", notice, {}, 0, 1);
   if (alf.find('$', 1) > kMaxSentenceBytes || alf.size() - alf.find('$', 1) > kMaxSentenceBytes) std::abort();

@@ -167,6 +167,8 @@ def look(seen):
     """By REST, once."""
     time_s = time.time()
     for context, target in (ask('/signalk/v1/api/targets') or {}).items():
+        if 'name' not in target:
+            continue  # a server that began anew was told the end of one that it never knew
         position = target['navigation']['position']
         check(context.startswith('lidar:') and '.' not in context, context)
         seen.take_position(id_of(target['name']), time_s, position['timestamp'], position['value'])
@@ -260,7 +262,6 @@ def run_way(name):
 
 def is_shown(target_id):
     targets = ask('/signalk/v1/api/targets') or {}
-    # A server that begins anew is told the end of one that it never knew.
     return any('name' in target and id_of(target['name']) == target_id and target['navigation']['position']['value'] for target in targets.values())
 
 
