@@ -16,7 +16,7 @@ TEST_F(PlotterService, SendsTheOwnShipAndTargets) {
   EXPECT_GE(nmea_->With("IIRMC").size(), 5U);
   EXPECT_EQ(nmea_->With("RATTM,00,").size(), 2U);  // at once and after 2.5 s
   EXPECT_GE(nmea_->With("RAOSD").size(), 5U);
-  EXPECT_EQ(signal_k_->With("targets.lidar:gannet-17").size(), 5U);
+  EXPECT_EQ(signal_k_->With("targets.lidar:gannet-1").size(), 5U);
   EXPECT_EQ(n2k_->With(" 1F608 ").size(), 2U);
   EXPECT_EQ(n2k_->With(" 1F801 ").size(), n2k_->With(" 1F802 ").size());
   EXPECT_EQ(service_->Report().state, HealthState::kOk) << service_->Report().reason;
@@ -58,8 +58,8 @@ TEST_F(PlotterService, TellsALostTargetOnce) {
   EXPECT_EQ(nmea_->With(",L,").size(), 1U);
   EXPECT_EQ(nmea_->With("RATTM,00,").size(), 1U);
   EXPECT_EQ(nmea_->With("RATTM,01,").size(), 3U);
-  ASSERT_EQ(signal_k_->With("gannet-17").size(), 1U);
-  EXPECT_NE(signal_k_->With("gannet-17")[0].find(R"("navigation.position","value":null)"), std::string::npos);
+  ASSERT_EQ(signal_k_->With("gannet-1").size(), 1U);
+  EXPECT_NE(signal_k_->With("gannet-1")[0].find(R"("navigation.position","value":null)"), std::string::npos);
 }
 
 TEST_F(PlotterService, SendsTentativeTracksOnlyWhereAsked) {
@@ -92,18 +92,18 @@ TEST_F(PlotterService, CallsATargetAsItsShipUnlessPeopleGaveAName) {
   Run(1'000'000);
   support::Send(*bus_, bus::kAis, AisOf(17, "EVEREST", host_us_, begin_us_));
   Run(1'200'000);
-  EXPECT_NE(signal_k_->With("gannet-17").back().find("EVEREST"), std::string::npos);
+  EXPECT_NE(signal_k_->With("gannet-1").back().find("EVEREST"), std::string::npos);
   support::Send(*bus_, bus::kAis, AisOf(17, "", host_us_, begin_us_));
   Run(1'200'000);
-  EXPECT_NE(signal_k_->With("gannet-17").back().find("MMSI 211000001"), std::string::npos);
+  EXPECT_NE(signal_k_->With("gannet-1").back().find("MMSI 211000001"), std::string::npos);
   names_ = {{17, "Kiosk pier"}};
   Run(1'200'000);
-  EXPECT_NE(signal_k_->With("gannet-17").back().find("Kiosk pier"), std::string::npos);
+  EXPECT_NE(signal_k_->With("gannet-1").back().find("Kiosk pier"), std::string::npos);
   // Of another process of the tracker the number means another thing.
   names_.clear();
   support::Send(*bus_, bus::kAis, AisOf(17, "EVEREST", host_us_, begin_us_ + 1));
   Run(1'200'000);
-  EXPECT_EQ(signal_k_->With("gannet-17").back().find("EVEREST"), std::string::npos);
+  EXPECT_EQ(signal_k_->With("gannet-1").back().find("EVEREST"), std::string::npos);
 }
 
 TEST_F(PlotterService, LeavesShipsOutForAPlotterThatHasAis) {
@@ -112,8 +112,8 @@ TEST_F(PlotterService, LeavesShipsOutForAPlotterThatHasAis) {
   tracks_ = {MakeTrack(17), MakeTrack(18)};
   support::Send(*bus_, bus::kAis, AisOf(17, "EVEREST", host_us_ + 200'000, begin_us_));
   Run(1'000'000);
-  EXPECT_TRUE(signal_k_->With("gannet-17").empty());
-  EXPECT_FALSE(signal_k_->With("gannet-18").empty());
+  EXPECT_TRUE(signal_k_->With("EVEREST").empty());
+  EXPECT_FALSE(signal_k_->With("boat 18").empty());
   // What AIS may have dropped is there, and what comes near, with an alert or before it.
   const auto is_sent = [this](auto&& change) {
     signal_k_->sent.clear();
@@ -123,7 +123,7 @@ TEST_F(PlotterService, LeavesShipsOutForAPlotterThatHasAis) {
     support::Send(*bus_, bus::kAis, ais);
     Run(1'000'000);
     return signal_k_->sent.end() != std::ranges::find_if(signal_k_->sent, [](const auto& text) {
-             return text.find("gannet-17") != std::string::npos && text.find("\"latitude\"") != std::string::npos;
+             return text.find("EVEREST") != std::string::npos && text.find("\"latitude\"") != std::string::npos;
            });
   };
   EXPECT_TRUE(is_sent([](auto& ship, auto&) { ship.arrival_utime_us -= 300'000'000; }));
@@ -134,7 +134,7 @@ TEST_F(PlotterService, LeavesShipsOutForAPlotterThatHasAis) {
   alerts_ = {MakeAlert(3)};
   alerts_[0].track_id = 17;
   Run(500'000);
-  EXPECT_FALSE(signal_k_->With("gannet-17").empty());
+  EXPECT_FALSE(signal_k_->With("EVEREST").empty());
 }
 
 TEST_F(PlotterService, StopsWhenNobodyLooks) {
@@ -153,7 +153,7 @@ TEST_F(PlotterService, StopsWhenNobodyLooks) {
   const auto words = signal_k_->With("no look-out");
   ASSERT_EQ(words.size(), 1U);
   EXPECT_NE(words[0].find("\"alarm\""), std::string::npos);
-  EXPECT_NE(signal_k_->With("gannet-17").back().find(R"("navigation.position","value":null)"), std::string::npos);
+  EXPECT_NE(signal_k_->With("gannet-1").back().find(R"("navigation.position","value":null)"), std::string::npos);
   EXPECT_GE(nmea_->With("RMC").size(), 4U);
   EXPECT_NE(service_->Report().reason.find("no ALERTS for 5 s"), std::string::npos) << service_->Report().reason;
   EXPECT_EQ(Count("times_unwatched"), 1);
@@ -337,8 +337,8 @@ TEST_F(PlotterService, EndsTargetsOfAServerThatWasAwayWhenTheLookOutFailed) {
   signal_k_->is_there = true;
   ++signal_k_->openings;
   Wait(500'000);
-  ASSERT_EQ(signal_k_->With("gannet-17").size(), 1U);
-  EXPECT_NE(signal_k_->With("gannet-17")[0].find(R"("navigation.position","value":null)"), std::string::npos);
+  ASSERT_EQ(signal_k_->With("gannet-1").size(), 1U);
+  EXPECT_NE(signal_k_->With("gannet-1")[0].find(R"("navigation.position","value":null)"), std::string::npos);
 }
 
 TEST_F(PlotterService, TellsNoTargetThatEndedWhileNobodyListened) {
@@ -394,7 +394,7 @@ TEST_F(PlotterService, EndsTargetsWhenItEndsInOrder) {
   service_->Finish();
   EXPECT_EQ(nmea_->With("RATTM,00,").size(), 1U);
   EXPECT_EQ(nmea_->With(",L,").size(), 1U);
-  EXPECT_EQ(signal_k_->With("gannet-17").size(), 1U);
+  EXPECT_EQ(signal_k_->With("gannet-1").size(), 1U);
 }
 
 TEST_F(PlotterService, RefusesWhatCannotBe) {
