@@ -1,6 +1,6 @@
 """Holds the probabilities of the C++ network (lookout-learned --weights) against those of PyTorch, on the same pixels.
 
-compare.py SET WEIGHTS.json   prints the greatest difference, and by how many returns the likeliest class differs
+compare.py SET WEIGHTS.json   prints the greatest difference, and of how many returns the likeliest class differs; fails above the tolerance
 """
 
 import pathlib
@@ -11,6 +11,8 @@ import torch
 
 import scans
 import squeezeseg
+
+TOLERANCE = 1e-4
 
 
 def main():
@@ -31,6 +33,8 @@ def main():
         greatest = max(greatest, float(numpy.abs(ours - other).max()))
         num_others += int((ours.argmax(1) != other.argmax(1)).sum())
     print(f"{len(numpy.unique(data.scan_of_view))} scans, {len(data.rows)} returns: greatest difference {greatest:.2e}, another class {num_others}")
+    if not greatest <= TOLERANCE:
+        raise SystemExit(f"more than {TOLERANCE}")
 
 
 if __name__ == "__main__":

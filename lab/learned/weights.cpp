@@ -39,28 +39,39 @@ bool AreFinite(const auto& values) {
 
 }  // namespace
 
-Weights ReadWeights(const std::filesystem::path& json_file) {
-  const auto refuse = [&json_file](const std::string& reason) { throw std::runtime_error(json_file.string() + ": " + reason); };
-  const auto text = ReadBytes(json_file);
-  const auto payload = ReadBytes(std::filesystem::path(json_file).replace_extension(".f16"));
+Weights ParseWeights(const std::string& about, const std::string& payload) {
   Weights weights;
   std::string digest;
   try {
-    const auto about = Json::parse(text);
-    weights.mean = about.at("mean").get<std::array<float, kNumChannels>>();
-    weights.deviation = about.at("deviation").get<std::array<float, kNumChannels>>();
-    weights.trained_on = about.at("trained_on").get<std::set<std::string>>();
-    digest = about.at("weights_sha256").get<std::string>();
+    const auto json = Json::parse(about);
+    weights.mean = json.at("mean").get<std::array<float, kNumChannels>>();
+    weights.deviation = json.at("deviation").get<std::array<float, kNumChannels>>();
+    weights.trained_on = json.at("trained_on").get<std::set<std::string>>();
+    digest = json.at("weights_sha256").get<std::string>();
   } catch (const Json::exception& error) {
-    refuse(error.what());
+    throw std::runtime_error(error.what());
+  }
+  weights.values = ToFloats(payload);
+  if (!AreFinite(weights.values) || !AreFinite(weights.mean) || !AreFinite(weights.deviation)) {
+    throw std::runtime_error("holds a number that is not finite");
+  }
+  if (std::ranges::any_of(weights.deviation, [](float deviation) { return deviation <= 0.0F; })) {
+    throw std::runtime_error("deviation: must be greater than 0");
   }
   bus::Sha256 sha256;
   sha256.Add(payload.data(), payload.size());
-  if (sha256.Finish() != digest) refuse("is not about the weights beside it: their digest is another");
-  weights.values = ToFloats(payload);
-  if (!AreFinite(weights.values) || !AreFinite(weights.mean) || !AreFinite(weights.deviation)) refuse("holds a number that is not finite");
-  if (std::ranges::any_of(weights.deviation, [](float deviation) { return deviation <= 0.0F; })) refuse("deviation: must be positive");
+  if (sha256.Finish() != digest) throw std::runtime_error("is not about the weights beside it: their digest is another");
   return weights;
+}
+
+Weights ReadWeights(const std::filesystem::path& json_file) {
+  const auto about = ReadBytes(json_file);
+  const auto payload = ReadBytes(std::filesystem::path(json_file).replace_extension(".f16"));
+  try {
+    return ParseWeights(about, payload);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(json_file.string() + ": " + error.what());
+  }
 }
 
 }  // namespace lookout::learned

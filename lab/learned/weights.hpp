@@ -18,11 +18,13 @@ struct Weights {
   std::set<std::string> trained_on;  // names of families
 };
 
-/// Reads NAME.json and NAME.f16 beside it (16-bit floats).
-///
-/// @throws std::runtime_error "file: reason": a file cannot be read, a member is missing or of another type, a number is not finite or a deviation
-/// not
-///         positive, the digest is that of other weights
+/// @param about    the text of NAME.json
+/// @param payload  the bytes of NAME.f16: floats of 16 bits
+/// @throws std::runtime_error with the reason: a member is missing or of another type, a number is not finite or a deviation not positive, the digest
+///         is that of other weights
+Weights ParseWeights(const std::string& about, const std::string& payload);
+
+/// Reads NAME.json and NAME.f16 beside it. @throws std::runtime_error "file: reason" as ParseWeights, or where a file cannot be read
 Weights ReadWeights(const std::filesystem::path& json_file);
 
 }  // namespace lookout::learned
