@@ -230,7 +230,8 @@ void AddSqueezeSeg(const ComparisonOptions& options, const Boat& boat, Methods& 
   const auto& filter = boat.segmenter.filter;
   const LearnedWeights weights(folder);
   if (!options.left_out.empty()) methods.push_back(std::make_unique<SqueezeSegLeftOut>(weights, filter, LeftOutOf(options)));
-  methods.push_back(std::make_unique<Peer>(std::string(kSqueezeSeg), filter, SizeLimits{}, SqueezeSegGrouping(weights.OfAll(), kSqueezeSegInstances)));
+  methods.push_back(
+      std::make_unique<Peer>(std::string(kSqueezeSeg), filter, SizeLimits{}, SqueezeSegGrouping(weights.OfAll(), kSqueezeSegInstances)));
 }
 
 }  // namespace

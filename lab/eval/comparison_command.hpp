@@ -25,7 +25,7 @@ struct ComparisonOptions {
   std::vector<std::string> left_out;
   std::filesystem::path weights_folder;
   std::filesystem::path network_folder;  // weights of SqueezeSeg (LearnedWeights); empty: NetworkFolderOf the sources
-  std::vector<std::string> points;  // scans out of files: .pcd, or .bin with a .label beside it or without
+  std::vector<std::string> points;       // scans out of files: .pcd, or .bin with a .label beside it or without
   /// A folder of captures with truth (ListCaptures); where it does not exist, the tables say so. Empty = none.
   std::filesystem::path captures;
   std::optional<std::uint64_t> first_seed;  // nullopt: the first of the range (run_plan.hpp)

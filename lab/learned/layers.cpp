@@ -19,9 +19,9 @@ struct Padded {
   int stride = 1;
   std::vector<float> values;  // [channel x row x phase x column of the phase]
 
-  const float* At(int channel, int row, int kernel_column) const {
-    const auto line = static_cast<std::size_t>((channel * num_rows + row) * stride + kernel_column % stride);
-    return values.data() + line * static_cast<std::size_t>(phase_columns) + kernel_column / stride;
+  std::size_t Place(int channel, int row, int column) const {
+    const auto line = static_cast<std::size_t>((channel * num_rows + row) * stride + column % stride);
+    return line * static_cast<std::size_t>(phase_columns) + static_cast<std::size_t>(column / stride);
   }
 };
 
@@ -34,48 +34,69 @@ Padded Pad(const Image& image, const Convolution::Shape& shape) {
   for (int channel = 0; channel < image.num_channels; ++channel) {
     for (int row = 0; row < image.num_rows; ++row) {
       const float* from = image.Row(channel, row);
-      const auto line = static_cast<std::size_t>((channel * padded.num_rows + row + rows_around) * padded.stride);
-      float* to = padded.values.data() + line * static_cast<std::size_t>(padded.phase_columns);
       for (int column = 0; column < image.num_columns; ++column) {
-        const int place = column + columns_around;
-        to[place % padded.stride * padded.phase_columns + place / padded.stride] = from[column];
+        padded.values[padded.Place(channel, row + rows_around, column + columns_around)] = from[column];
       }
     }
   }
   return padded;
 }
 
+// Where each product of a sum finds its value, from the value of the first: over inputs, kernel rows and kernel columns, in this order.
+std::vector<std::size_t> TapsOf(const Padded& padded, const Convolution::Shape& shape) {
+  std::vector<std::size_t> taps;
+  taps.reserve(static_cast<std::size_t>(shape.num_inputs * shape.kernel_rows * shape.kernel_columns));
+  for (int input = 0; input < shape.num_inputs; ++input) {
+    for (int row = 0; row < shape.kernel_rows; ++row) {
+      for (int column = 0; column < shape.kernel_columns; ++column) taps.push_back(padded.Place(input, row, column));
+    }
+  }
+  return taps;
+}
+
 struct Kernel {
-  const Convolution::Shape& shape;
+  std::span<const std::size_t> taps;
   const float* weight;  // of four outputs
   const float* bias;
 };
 
-// Four channels of sixteen columns of one row: for each value the sum over inputs, kernel rows and kernel columns, in this order.
-[[gnu::always_inline]] inline void ConvolveBlock(const Padded& padded, const Kernel& kernel, int row, int column, Sixteen (&sum)[kOutputsAtOnce]) {
-  for (int output = 0; output < kOutputsAtOnce; ++output) sum[output] = Sixteen{} + kernel.bias[output];
+// Four channels of sixteen columns of one row, each in registers of its own.
+struct Sums {
+  Sixteen first;
+  Sixteen second;
+  Sixteen third;
+  Sixteen fourth;
+};
+
+[[gnu::always_inline]] inline void ConvolveBlock(const float* first, const Kernel& kernel, Sums& sums) {
+  Sixteen sum_0 = Sixteen{} + kernel.bias[0];
+  Sixteen sum_1 = Sixteen{} + kernel.bias[1];
+  Sixteen sum_2 = Sixteen{} + kernel.bias[2];
+  Sixteen sum_3 = Sixteen{} + kernel.bias[3];
   const float* weight = kernel.weight;
-  for (int input = 0; input < kernel.shape.num_inputs; ++input) {
-    for (int kernel_row = 0; kernel_row < kernel.shape.kernel_rows; ++kernel_row) {
-      for (int kernel_column = 0; kernel_column < kernel.shape.kernel_columns; ++kernel_column) {
-        Sixteen values;
-        std::memcpy(&values, padded.At(input, row + kernel_row, kernel_column) + column, sizeof(values));
-        for (int output = 0; output < kOutputsAtOnce; ++output) sum[output] += values * weight[output];
-        weight += kOutputsAtOnce;
-      }
-    }
+  for (const auto tap : kernel.taps) {
+    Sixteen values;
+    std::memcpy(&values, first + tap, sizeof(values));
+    sum_0 += values * weight[0];
+    sum_1 += values * weight[1];
+    sum_2 += values * weight[2];
+    sum_3 += values * weight[3];
+    weight += kOutputsAtOnce;
   }
+  sums = {sum_0, sum_1, sum_2, sum_3};
 }
 
 [[gnu::always_inline]] inline void ConvolveFour(const Padded& padded, const Kernel& kernel, Activation activation, int first_output, Image& result) {
   const int num_outputs = std::min(kOutputsAtOnce, result.num_channels - first_output);
+  Sums sums{};
   for (int row = 0; row < result.num_rows; ++row) {
     for (int column = 0; column < result.num_columns; column += kColumnsAtOnce) {
-      Sixteen sum[kOutputsAtOnce];
-      ConvolveBlock(padded, kernel, row, column, sum);
+      ConvolveBlock(padded.values.data() + padded.Place(0, row, column * padded.stride), kernel, sums);
+      const Sixteen* const of_output[kOutputsAtOnce] = {&sums.first, &sums.second, &sums.third, &sums.fourth};
       for (int output = 0; output < num_outputs; ++output) {
-        if (activation == Activation::kRelu) sum[output] = sum[output] > 0.0F ? sum[output] : Sixteen{};
-        std::memcpy(result.Row(first_output + output, row) + column, &sum[output], sizeof(Sixteen));
+        const Sixteen sum = *of_output[output];
+        const Sixteen active = activation == Activation::kRelu ? (sum > 0.0F ? sum : Sixteen{}) : sum;
+        std::memcpy(result.Row(first_output + output, row) + column, &active, sizeof(active));
       }
     }
   }
@@ -147,11 +168,12 @@ Image Convolution::Apply(const Image& image) const {
   }
   static const Convolve convolve = Fastest();
   const auto padded = Pad(image, shape_);
+  const auto taps = TapsOf(padded, shape_);
   Image result(shape_.num_outputs, image.num_rows, image.num_columns / shape_.stride);
   const std::size_t block_size = weight_.size() / bias_.size() * kOutputsAtOnce;
   for (int output = 0; output < shape_.num_outputs; output += kOutputsAtOnce) {
     const auto block = static_cast<std::size_t>(output / kOutputsAtOnce);
-    convolve(padded, {shape_, weight_.data() + block * block_size, bias_.data() + output}, activation_, output, result);
+    convolve(padded, {taps, weight_.data() + block * block_size, bias_.data() + output}, activation_, output, result);
   }
   return result;
 }

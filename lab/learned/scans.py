@@ -26,7 +26,7 @@ class ScanSet:
         view = self.rows["scan"].astype(numpy.int64) * NUM_VIEWS + self.rows["pixel"] // (self.num_rows * VIEW_COLUMNS)
         if numpy.any(numpy.diff(view) < 0):
             raise ValueError(f"{folder}: returns are out of order")
-#Of the views that hold a return : which rows are theirs, and which scan they are of.
+        # Of the views that hold a return: which rows are theirs, and which scan they are of.
         self.views, self.begin = numpy.unique(view, return_index=True)
         self.end = numpy.append(self.begin[1:], len(self.rows))
         self.scan_of_view = self.views // NUM_VIEWS

@@ -17,7 +17,7 @@ NUM_CHANNELS = 5
 VIEW_COLUMNS = 512
 NUM_VIEWS = 4
 
-#The recurrent CRF, with the hyper - parameters that the authors' program has for cars: angles in pixels, positions in normalised coordinates.
+# The recurrent CRF, with the hyper-parameters that the authors' program has for cars: angles in pixels, positions in normalised coordinates.
 CRF_STEPS = 3
 CRF_ROWS = 3
 CRF_COLUMNS = 5
@@ -148,7 +148,7 @@ class SqueezeSeg(nn.Module):
         self.to(memory_format=torch.channels_last)  # twice as fast on a processor
 
     def _initialise(self):
-#The authors began with the weights of SqueezeNet, trained on photographs; without them their small random numbers would let no signal through.
+        # The authors began with the weights of SqueezeNet, trained on photographs; without them their small random numbers would let no signal through.
         for module in self.modules():
             if isinstance(module, nn.Conv2d):
                 nn.init.kaiming_normal_(module.weight, nonlinearity="relu")
@@ -168,7 +168,7 @@ class SqueezeSeg(nn.Module):
         x = self.fire10(x) + fire5
         x = self.fire11(x) + fire3
         x = self.fire12(x) + conv1
-#PyTorch 1.13 computes wrong gradients of the weights of these layers in 16 bits.
+        # PyTorch 1.13 computes wrong gradients of the weights of these layers in 16 bits.
         with torch.autocast("cpu", enabled=False):
             x = self.fire13(x.float()) + functional.relu(self.conv1_skip(normalised))
             return self.conv14(self.dropout(x))

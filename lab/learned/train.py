@@ -17,12 +17,12 @@ from torch.nn import functional
 import scans
 import squeezeseg
 
-#Seeds of the set : the last ones only draw the curve.Nothing is chosen by it.
+# Seeds of the set: the last ones only draw the curve. Nothing is chosen by it.
 LAST_SEED = 90
 LAST_CURVE_SEED = 100
 
-#The authors' values, but for the rate (theirs: 0.01), the batch (theirs: 32) and the schedule (theirs: half the rate every 10 000 steps; here one descent
-#to 0).
+# The authors' values, but for the rate (theirs: 0.01), the batch (theirs: 32) and the schedule (theirs: half the rate every 10 000 steps; here one descent
+# to 0).
 LEARNING_RATE = 0.02
 MOMENTUM = 0.9
 WEIGHT_DECAY = 1e-4
@@ -44,10 +44,10 @@ def rate_at(step, num_steps):
 
 
 def loss_of(model, image, mask, label, weight):
-#The convolutions in 16 bits(bfloat16) take half the time; weights and sums stay in 32 bits.
+    # The convolutions in 16 bits (bfloat16) take half the time; weights and sums stay in 32 bits.
     with torch.autocast("cpu", torch.bfloat16):
         refined, unary = model(image, mask)
-#Behind three softmaxes the gradient is some thirtieth : without the second term the network learns as much slower.The authors trained longer.
+    # Behind three softmaxes the gradient is some thirtieth: without the second term the network learns as much slower. The authors trained longer.
     cross_entropy = lambda log_odds: functional.cross_entropy(log_odds, label[mask], weight=weight, reduction="none").mean()
     return LOSS_COEFFICIENT * (cross_entropy(refined) + cross_entropy(unary))
 

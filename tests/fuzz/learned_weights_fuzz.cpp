@@ -1,4 +1,5 @@
-// The file of weights of SqueezeSeg: the first line of the input is NAME.json, the rest NAME.f16. What it takes must be what a network can compute with.
+// The file of weights of SqueezeSeg: the first line of the input is NAME.json, the rest NAME.f16. What it takes must be what a network can compute
+// with.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -381,8 +381,8 @@ void WriteLearnedWeights(const Folder& folder) {
   const std::string payload("\x00\x3c\x00\xc0", 4);
   bus::Sha256 sha256;
   sha256.Add(payload.data(), payload.size());
-  folder.Write("two", R"({"mean": [20, 0, 1, 0.1, 25], "deviation": [16, 13, 3, 0.1, 18], "trained_on": ["beach"], "weights_sha256": ")" + sha256.Finish() +
-                          "\"}\n" + payload);
+  folder.Write("two", R"({"mean": [20, 0, 1, 0.1, 25], "deviation": [16, 13, 3, 0.1, 18], "trained_on": ["beach"], "weights_sha256": ")" +
+                          sha256.Finish() + "\"}\n" + payload);
 }
 
 // One input is a PCD file, or points and then their labels.

@@ -253,15 +253,17 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
   if (std::ranges::any_of(results.methods, IsLearned, &MethodResult::method)) {
     const bool is_left_out = std::ranges::any_of(results.methods, [](const auto& method) { return method.method.starts_with(kLeftOut); });
     const std::string name = is_left_out ? "learned-families" : "learned";
-    add_table(name, "overall",
-              fmt::format("mIoU, of it over objects in the water (water), things with a segment: means over the scenes, %; false segments a scan; time "
-                          "of a scan on one core ({}).",
-                          results.computer),
-              IsOfInterest, [](const std::string& heading) {
-                return std::ranges::any_of(std::array{"method", "mIoU_%", "water_%", "false", "with_segment_%", "median_ms"},
-                                           [&](std::string_view end) { return heading.ends_with(end); });
-              });
-    add_table(name + "-lost", "things_lost", "Things of 5 returns or more with an IoU below 0.5, by what became of them, % of all things.", IsOfInterest,
+    add_table(
+        name, "overall",
+        fmt::format("mIoU, of it over objects in the water (water), things with a segment: means over the scenes, %; false segments a scan; time "
+                    "of a scan on one core ({}).",
+                    results.computer),
+        IsOfInterest, [](const std::string& heading) {
+          return std::ranges::any_of(std::array{"method", "mIoU_%", "water_%", "false", "with_segment_%", "median_ms"},
+                                     [&](std::string_view end) { return heading.ends_with(end); });
+        });
+    add_table(name + "-lost", "things_lost", "Things of 5 returns or more with an IoU below 0.5, by what became of them, % of all things.",
+              IsOfInterest,
               [](const std::string& heading) { return heading.find("land_") == std::string::npos || heading.ends_with("into_land_%"); });
   }
   if (const auto sweep = std::ranges::find_if_not(results.curves, &std::string::empty, &Curve::value_of_boat); sweep != results.curves.end()) {

@@ -51,7 +51,8 @@ void ExpectTheDefinition(const Convolution::Shape& shape, int rows, int columns)
   for (int output = 0; output < shape.num_outputs; ++output) {
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < result.num_columns; ++column) {
-        ASSERT_EQ(At(result, output, row, column), Convolved(image, shape, weight, bias, output, row, column)) << output << " " << row << " " << column;
+        ASSERT_EQ(At(result, output, row, column), Convolved(image, shape, weight, bias, output, row, column))
+            << output << " " << row << " " << column;
       }
     }
   }

@@ -32,8 +32,8 @@ TEST(RecurrentCrf, WithoutNeighboursHandsOnItsOwnProbabilitiesThreeTimes) {
   for (std::size_t c = 0; c < kNumClasses; ++c) EXPECT_NEAR(pixels[0].log_odds[c], expected[c], 1e-6F);
 }
 
-// By hand, the first step alone: its neighbour tells what it is, weighted by the Gaussian of one pixel and the compatibility 0.5; the next steps begin
-// with that.
+// By hand, the first step alone: its neighbour tells what it is, weighted by the Gaussian of one pixel and the compatibility 0.5; the next steps
+// begin with that.
 TEST(RecurrentCrf, StepsAsWrittenByHand) {
   std::vector<CrfPixel> pixels{{0, 0, {}, {0.0F, 3.0F, 0.0F}}, {0, 1, {}, {0.0F, 0.0F, 0.0F}}};
   std::vector<OfClasses> log_odds{pixels[0].log_odds, pixels[1].log_odds};

@@ -27,8 +27,8 @@ inline Weights AnyWeights(std::size_t count = kNumWeights) {
 inline std::string AboutOf(const std::string& payload, const std::string& deviation = "[16, 13, 3, 0.1, 18]") {
   bus::Sha256 sha256;
   sha256.Add(payload.data(), payload.size());
-  return R"({"mean": [20, 0, 1, 0.1, 25], "deviation": )" + deviation + R"(, "trained_on": ["beach", "rough"], "weights_sha256": ")" + sha256.Finish() +
-         "\"}";
+  return R"({"mean": [20, 0, 1, 0.1, 25], "deviation": )" + deviation + R"(, "trained_on": ["beach", "rough"], "weights_sha256": ")" +
+         sha256.Finish() + "\"}";
 }
 
 }  // namespace lookout::learned::test
