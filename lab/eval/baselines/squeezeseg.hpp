@@ -20,7 +20,7 @@ inline constexpr std::string_view kSqueezeSeg = "SqueezeSeg";
 inline constexpr std::string_view kSqueezeSegLeftOut = "SqueezeSeg, left out";
 
 /// Chosen on seeds of tuning (lab/learned/README.md).
-inline constexpr DbscanParams kSqueezeSegInstances{1.0, 1};
+inline constexpr DbscanParams kSqueezeSegInstances{2.0, 1};
 
 /// Things and land are clustered apart, by class; clutter is in no segment. Stages: image, network, clusters.
 Grouping SqueezeSegGrouping(std::shared_ptr<const learned::Network> network, const DbscanParams& instances);
