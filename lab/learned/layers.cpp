@@ -20,8 +20,8 @@ struct Padded {
   std::vector<float> values;  // [channel x row x phase x column of the phase]
 
   std::size_t Place(int channel, int row, int column) const {
-    const auto line = static_cast<std::size_t>((channel * num_rows + row) * stride + column % stride);
-    return line * static_cast<std::size_t>(phase_columns) + static_cast<std::size_t>(column / stride);
+    const std::int64_t line = (std::int64_t{channel} * num_rows + row) * stride + column % stride;
+    return static_cast<std::size_t>(line * phase_columns + column / stride);
   }
 };
 
@@ -29,8 +29,7 @@ Padded Pad(const Image& image, const Convolution::Shape& shape) {
   const int rows_around = shape.kernel_rows / 2;
   const int columns_around = shape.kernel_columns / 2;
   Padded padded{image.num_rows + 2 * rows_around, (image.num_columns + 2 * columns_around + shape.stride - 1) / shape.stride, shape.stride, {}};
-  padded.values.resize(static_cast<std::size_t>(image.num_channels * padded.num_rows * padded.stride) *
-                       static_cast<std::size_t>(padded.phase_columns));
+  padded.values.resize(static_cast<std::size_t>(std::int64_t{image.num_channels} * padded.num_rows * padded.stride * padded.phase_columns));
   for (int channel = 0; channel < image.num_channels; ++channel) {
     for (int row = 0; row < image.num_rows; ++row) {
       const float* from = image.Row(channel, row);
@@ -45,7 +44,7 @@ Padded Pad(const Image& image, const Convolution::Shape& shape) {
 // Where each product of a sum finds its value, from the value of the first: over inputs, kernel rows and kernel columns, in this order.
 std::vector<std::size_t> TapsOf(const Padded& padded, const Convolution::Shape& shape) {
   std::vector<std::size_t> taps;
-  taps.reserve(static_cast<std::size_t>(shape.num_inputs * shape.kernel_rows * shape.kernel_columns));
+  taps.reserve(shape.NumTaps());
   for (int input = 0; input < shape.num_inputs; ++input) {
     for (int row = 0; row < shape.kernel_rows; ++row) {
       for (int column = 0; column < shape.kernel_columns; ++column) taps.push_back(padded.Place(input, row, column));
@@ -150,7 +149,7 @@ std::vector<float> HalfOf(std::span<const float> weight, int num_channels, bool 
 Convolution::Convolution(const Shape& shape, std::span<const float> weight, std::span<const float> bias, Activation activation)
     : shape_(shape), activation_(activation) {
   const auto num_outputs = static_cast<std::size_t>(shape.num_outputs);
-  const auto num_taps = static_cast<std::size_t>(shape.num_inputs * shape.kernel_rows * shape.kernel_columns);
+  const std::size_t num_taps = shape.NumTaps();
   if (weight.size() != num_outputs * num_taps || bias.size() != num_outputs) throw std::logic_error("weights of another layer");
   const std::size_t num_blocks = (num_outputs + kOutputsAtOnce - 1) / kOutputsAtOnce;
   weight_.resize(num_blocks * num_taps * kOutputsAtOnce);

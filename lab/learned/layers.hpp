@@ -41,6 +41,9 @@ class Convolution {
     int kernel_rows = 1;  // 1 or 3
     int kernel_columns = 1;
     int stride = 1;  // of columns
+
+    /// Products of which a value is the sum.
+    std::size_t NumTaps() const { return static_cast<std::size_t>(std::int64_t{num_inputs} * kernel_rows * kernel_columns); }
   };
 
   /// @param weight  [output x input x kernel row x kernel column]

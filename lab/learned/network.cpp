@@ -20,8 +20,9 @@ std::span<const float> Take(std::size_t count, std::span<const float>& rest) {
 }
 
 Convolution TakeConvolution(const Convolution::Shape& shape, Activation activation, std::span<const float>& rest) {
-  const auto weight = Take(static_cast<std::size_t>(shape.num_outputs * shape.num_inputs * shape.kernel_rows * shape.kernel_columns), rest);
-  const auto bias = Take(static_cast<std::size_t>(shape.num_outputs), rest);
+  const auto num_outputs = static_cast<std::size_t>(shape.num_outputs);
+  const auto weight = Take(num_outputs * shape.NumTaps(), rest);
+  const auto bias = Take(num_outputs, rest);
   return {shape, weight, bias, activation};
 }
 

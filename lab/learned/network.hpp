@@ -24,9 +24,9 @@ class Fire {
  public:
   enum class Width { kSame, kDoubled };
   struct Shape {
-    int num_inputs;
-    int num_squeezed;
-    int num_expanded;  // of each of the two
+    int num_inputs = 0;
+    int num_squeezed = 0;
+    int num_expanded = 0;  // of each of the two
     Width width = Width::kSame;
   };
 

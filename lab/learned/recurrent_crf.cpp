@@ -17,7 +17,7 @@ struct Neighbour {
 std::vector<std::vector<Neighbour>> NeighboursOf(std::span<const CrfPixel> pixels, int num_rows, int num_columns) {
   constexpr std::int32_t kEmpty = -1;
   std::vector<std::int32_t> index_at(static_cast<std::size_t>(num_rows) * static_cast<std::size_t>(num_columns), kEmpty);
-  const auto place = [num_columns](int row, int column) { return static_cast<std::size_t>(row * num_columns + column); };
+  const auto place = [num_columns](int row, int column) { return static_cast<std::size_t>(std::int64_t{row} * num_columns + column); };
   for (std::size_t i = 0; i < pixels.size(); ++i) index_at[place(pixels[i].row, pixels[i].column)] = static_cast<std::int32_t>(i);
   std::vector<std::vector<Neighbour>> neighbours(pixels.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) {

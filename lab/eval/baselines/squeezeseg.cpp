@@ -34,7 +34,7 @@ std::vector<Class> ClassesOf(const learned::Network& network, const segmenter::S
     if (pixels.empty()) continue;
     const auto probability = network.Classify(pixels, views.num_rows);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const auto place = static_cast<std::size_t>(pixels[i].row * learned::kViewColumns + pixels[i].column);
+      const auto place = static_cast<std::size_t>(std::int64_t{pixels[i].row} * learned::kViewColumns + pixels[i].column);
       const auto likeliest = std::ranges::max_element(probability[i]) - probability[i].begin();
       of_pixel[first + place] = static_cast<Class>(likeliest);
     }

@@ -29,7 +29,7 @@ float At(const Image& image, int channel, int row, int column) {
 float Convolved(const Image& image, const Convolution::Shape& shape, const std::vector<float>& weight, const std::vector<float>& bias, int output,
                 int row, int column) {
   double sum = bias[static_cast<std::size_t>(output)];
-  std::size_t tap = static_cast<std::size_t>(output * shape.num_inputs * shape.kernel_rows * shape.kernel_columns);
+  std::size_t tap = static_cast<std::size_t>(output) * shape.NumTaps();
   for (int input = 0; input < shape.num_inputs; ++input) {
     for (int r = 0; r < shape.kernel_rows; ++r) {
       for (int c = 0; c < shape.kernel_columns; ++c) {
@@ -42,7 +42,7 @@ float Convolved(const Image& image, const Convolution::Shape& shape, const std::
 
 void ExpectTheDefinition(const Convolution::Shape& shape, int rows, int columns) {
   const auto image = Filled(shape.num_inputs, rows, columns);
-  const auto weight = Numbers(static_cast<std::size_t>(shape.num_outputs * shape.num_inputs * shape.kernel_rows * shape.kernel_columns), 0.125F);
+  const auto weight = Numbers(static_cast<std::size_t>(shape.num_outputs) * shape.NumTaps(), 0.125F);
   const auto bias = Numbers(static_cast<std::size_t>(shape.num_outputs), 0.5F);
   const auto result = Convolution(shape, weight, bias, Activation::kNone).Apply(image);
   ASSERT_EQ(result.num_channels, shape.num_outputs);
