@@ -263,8 +263,10 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
                                      [&](std::string_view end) { return heading.ends_with(end); });
         });
     add_table(name + "-lost", "things_lost", "Things of 5 returns or more with an IoU below 0.5, by what became of them, % of all things.",
-              IsOfInterest,
-              [](const std::string& heading) { return heading.find("land_") == std::string::npos || heading.ends_with("into_land_%"); });
+              IsOfInterest, [](const std::string& heading) {
+                return !std::ranges::any_of(std::array{"near_land", "near_land_found_%", "land_segments", "segments_of_land_object"},
+                                            [&](std::string_view end) { return heading.ends_with(end); });
+              });
   }
   if (const auto sweep = std::ranges::find_if_not(results.curves, &std::string::empty, &Curve::value_of_boat); sweep != results.curves.end()) {
     add("sweeps",
