@@ -376,6 +376,15 @@ void WritePatches(const Folder& folder) {
   }
 }
 
+// NAME.json in the first line, then NAME.f16: two floats, which are no network.
+void WriteLearnedWeights(const Folder& folder) {
+  const std::string payload("\x00\x3c\x00\xc0", 4);
+  bus::Sha256 sha256;
+  sha256.Add(payload.data(), payload.size());
+  folder.Write("two", R"({"mean": [20, 0, 1, 0.1, 25], "deviation": [16, 13, 3, 0.1, 18], "trained_on": ["beach"], "weights_sha256": ")" +
+                          sha256.Finish() + "\"}\n" + payload);
+}
+
 // One input is a PCD file, or points and then their labels.
 void WritePointFiles(const Folder& folder) {
   using namespace data::test;
@@ -476,6 +485,7 @@ int main(int argc, char** argv) try {
   WriteScans(Folder(root / "fuzz_segmenter"));
   WritePatches(Folder(root / "fuzz_georeferencer"));
   WritePatches(Folder(root / "fuzz_tracker"));
+  WriteLearnedWeights(Folder(root / "fuzz_learned_weights"));
   WritePointFiles(Folder(root / "fuzz_point_file"));
   WritePageRequests(Folder(root / "fuzz_page_request"));
   WriteArchiveTexts(Folder(root / "fuzz_archive"));
