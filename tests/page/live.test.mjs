@@ -57,7 +57,7 @@ test("before anything came the page says so, and that nobody keeps a look-out is
 });
 
 test("an alert is raised, seen and heard of by screen readers, refused without the token, acknowledged with it, and cleared", async () => {
-  await sail(120);
+  await sail(150);
   const stranger = await open();
   await isMode(stranger, "live");
   await stranger.waitForSelector(".alerts li.alert[data-gravity=warning]", { timeout: 40_000 });
