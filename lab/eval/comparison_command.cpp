@@ -256,16 +256,8 @@ Methods MethodsOf(const ComparisonOptions& options, const Boat& boat, const std:
 
 RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
   const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
-  RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds, options.lidars};
-  for (const auto& scene : options.scenes) {
-    if (scene != "all" && scene != kFamilies) {
-      plan.scenes.push_back(scene);
-      continue;
-    }
-    const auto known_scenes = scene == kFamilies ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder);
-    for (const auto& known : known_scenes) plan.scenes.push_back(known.name);
-  }
-  return plan;
+  return {NamesOfScenes(options.scenes, options.config_folder), options.first_seed.value_or(first_seed), options.num_seeds, options.seconds,
+          options.lidars};
 }
 
 int CompareMethods(const ComparisonOptions& options) {

@@ -13,7 +13,6 @@
 #include "lab/eval/methods/run_plan.hpp"
 #include "lab/learned/network.hpp"
 #include "lab/learned/views.hpp"
-#include "lab/sim/scene_file.hpp"
 
 namespace lookout::learned {
 namespace {
@@ -71,25 +70,11 @@ Bytes BytesOf(const std::vector<T>& values) {
   return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)};
 }
 
-eval::RunPlan PlanOf(const Options& options) {
-  eval::RunPlan plan{{}, options.first_seed, options.num_seeds, options.seconds};
-  for (const auto& scene : options.scenes) {
-    if (scene != "families" && scene != "all") {
-      plan.scenes.push_back(scene);
-      continue;
-    }
-    for (const auto& known : scene == "families" ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder)) {
-      plan.scenes.push_back(known.name);
-    }
-  }
-  plan.CheckSeeds(eval::SeedUse::kTuning);
-  return plan;
-}
-
 }  // namespace
 
 int ExportScenes(const Options& options) {
-  const auto plan = PlanOf(options);
+  const eval::RunPlan plan{eval::NamesOfScenes(options.scenes, options.config_folder), options.first_seed, options.num_seeds, options.seconds};
+  plan.CheckSeeds(eval::SeedUse::kTuning);
   const auto boat = eval::LoadBoat(options.config_folder);
   io::CatchStopSignals();
   const io::OutputOptions output{.force = options.is_forced};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/core/hash.hpp"
+
 namespace lookout::plotter {
 
 namespace {
@@ -84,10 +86,8 @@ std::uint64_t N2kName(std::uint32_t unique_number) {
 }
 
 std::uint32_t UniqueNumberOf(std::string_view text) {
-  // FNV-1a of 32 bits, folded.
-  std::uint32_t hash = 2'166'136'261U;
-  for (const char letter : text) hash = (hash ^ static_cast<std::uint8_t>(letter)) * 16'777'619U;
-  return (hash >> 21U ^ hash) & 0x1F'FFFFU;
+  const auto hash = Fnv1a(text);
+  return static_cast<std::uint32_t>((hash >> 42U ^ hash >> 21U ^ hash) & 0x1F'FFFFU);
 }
 
 std::optional<std::uint64_t> ClaimedNameOf(const N2kFrame& frame) {

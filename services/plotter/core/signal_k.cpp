@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/core/hash.hpp"
 #include "common/core/printable.hpp"
 
 namespace lookout::plotter {
@@ -64,13 +65,6 @@ class Delta {
   Utime time_;
   Json values_ = Json::array();
 };
-
-// FNV-1a.
-std::uint64_t Hash(std::string_view text) {
-  std::uint64_t hash = 14'695'981'039'346'656'037U;
-  for (const char letter : text) hash = (hash ^ static_cast<std::uint8_t>(letter)) * 1'099'511'628'211U;
-  return hash;
-}
 
 std::string_view StateOf(const Notice& notice) {
   switch (notice.state) {
@@ -165,8 +159,8 @@ std::string TargetContext(std::string_view boat, int place) { return fmt::format
 
 std::string VesselContext(std::string_view boat, int place) {
   // As the server wants them: version 4, variant 2.
-  const auto first = Hash(fmt::format("{}-{}", boat, place));
-  const auto second = Hash(fmt::format("{}-{} lidar", boat, place));
+  const auto first = Fnv1a(fmt::format("{}-{}", boat, place));
+  const auto second = Fnv1a(fmt::format("{}-{} lidar", boat, place));
   return fmt::format("vessels.urn:mrn:signalk:uuid:{:08x}-{:04x}-4{:03x}-{:x}{:03x}-{:012x}", first >> 32U, first >> 16U & 0xFFFFU, first & 0xFFFU,
                      8U | (second >> 60U & 3U), second >> 48U & 0xFFFU, second & 0xFFFF'FFFF'FFFFU);
 }
