@@ -19,8 +19,8 @@ namespace lookout::fit {
 namespace {
 
 eval::RunPlan PlanOf(const Options& options) {
-  const eval::RunPlan plan{eval::NamesOfScenes(options.scenes, options.config_folder), options.first_seed, options.num_seeds, options.seconds,
-                           options.lidars};
+  eval::RunPlan plan{eval::NamesOfScenes(options.scenes, options.config_folder), options.first_seed, options.num_seeds, options.seconds,
+                     options.lidars};
   eval::CheckLidars(options.lidars);
   plan.CheckSeeds(eval::SeedUse::kTuning);
   return plan;
