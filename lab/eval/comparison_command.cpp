@@ -24,6 +24,7 @@
 #include "lab/data/organise.hpp"
 #include "lab/data/pcd.hpp"
 #include "lab/data/scan_message.hpp"
+#include "lab/eval/baselines/squeezeseg.hpp"
 #include "lab/eval/methods/captures.hpp"
 #include "lab/eval/methods/figures.hpp"
 #include "lab/eval/methods/leave_out.hpp"
@@ -216,13 +217,37 @@ void RefuseIfThere(const std::filesystem::path& folder, const char* ending, int 
   }
 }
 
+bool IsSqueezeSeg(const std::string& name) { return name == kSqueezeSeg || name == "squeezeseg"; }
+
+void AddSqueezeSeg(const ComparisonOptions& options, const Boat& boat, Methods& methods) {
+  const auto folder = NetworkFolderOf(options);
+  if (!std::filesystem::exists(folder)) {
+    const auto reason = fmt::format("{}: {} is not here, which holds its weights", kSqueezeSeg, folder.string());
+    if (std::ranges::any_of(options.methods, IsSqueezeSeg) || !options.network_folder.empty()) throw std::invalid_argument("--methods: " + reason);
+    std::cerr << reason << ": it is left out\n";
+    return;
+  }
+  const auto& filter = boat.segmenter.filter;
+  const LearnedWeights weights(folder);
+  if (!options.left_out.empty()) methods.push_back(std::make_unique<SqueezeSegLeftOut>(weights, filter, LeftOutOf(options)));
+  methods.push_back(
+      std::make_unique<Peer>(std::string(kSqueezeSeg), filter, SizeLimits{}, SqueezeSegGrouping(weights.OfAll(), kSqueezeSegInstances)));
+}
+
 }  // namespace
+
+std::filesystem::path NetworkFolderOf(const ComparisonOptions& options) {
+  return options.network_folder.empty() ? std::filesystem::path(LOOKOUT_NETWORK_FOLDER) : options.network_folder;
+}
 
 Methods MethodsOf(const ComparisonOptions& options, const Boat& boat, const std::function<std::unique_ptr<Method>()>& make_over_time) {
   auto names = options.methods;
   const bool is_over_time = std::ranges::any_of(names, [](const auto& name) { return name == "all" || name == "ours" || name == kOverTime; });
+  const bool is_squeezeseg = std::ranges::any_of(names, [](const auto& name) { return name == "all" || name == "peers" || IsSqueezeSeg(name); });
   std::erase(names, kOverTime);
+  std::erase_if(names, IsSqueezeSeg);
   auto methods = MakeMethods(boat.segmenter, names);
+  if (is_squeezeseg) AddSqueezeSeg(options, boat, methods);
   if (!is_over_time) return methods;
   const auto behind_ours = std::ranges::find_if_not(methods, [](const auto& method) { return method->name().starts_with("ours"); });
   methods.insert(behind_ours, make_over_time());
@@ -231,16 +256,8 @@ Methods MethodsOf(const ComparisonOptions& options, const Boat& boat, const std:
 
 RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
   const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
-  RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds, options.lidars};
-  for (const auto& scene : options.scenes) {
-    if (scene != "all" && scene != kFamilies) {
-      plan.scenes.push_back(scene);
-      continue;
-    }
-    const auto known_scenes = scene == kFamilies ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder);
-    for (const auto& known : known_scenes) plan.scenes.push_back(known.name);
-  }
-  return plan;
+  return {NamesOfScenes(options.scenes, options.config_folder), options.first_seed.value_or(first_seed), options.num_seeds, options.seconds,
+          options.lidars};
 }
 
 int CompareMethods(const ComparisonOptions& options) {

@@ -24,7 +24,8 @@ struct ComparisonOptions {
   /// Families, or "families": scored with evidence that was fitted without them, out of a folder (LeaveOutEvidence).
   std::vector<std::string> left_out;
   std::filesystem::path weights_folder;
-  std::vector<std::string> points;  // scans out of files: .pcd, or .bin with a .label beside it or without
+  std::filesystem::path network_folder;  // weights of SqueezeSeg (LearnedWeights); empty: NetworkFolderOf the sources
+  std::vector<std::string> points;       // scans out of files: .pcd, or .bin with a .label beside it or without
   /// A folder of captures with truth (ListCaptures); where it does not exist, the tables say so. Empty = none.
   std::filesystem::path captures;
   std::optional<std::uint64_t> first_seed;  // nullopt: the first of the range (run_plan.hpp)
@@ -51,7 +52,11 @@ RunPlan PlanOf(const ComparisonOptions& options, SeedUse use);
 /// The processor, as Linux names it.
 std::string Computer();
 
-/// Methods by name and group; the boat over time stands behind ours.
+/// Where the weights of SqueezeSeg are: the folder that was asked for, or that of the sources.
+std::filesystem::path NetworkFolderOf(const ComparisonOptions& options);
+
+/// Methods by name and group; the boat over time stands behind ours, SqueezeSeg at the end. Where its weights are not there, it is left out, which
+/// a line to stderr says. @throws std::invalid_argument when it was asked for by name
 Methods MethodsOf(const ComparisonOptions& options, const Boat& boat, const std::function<std::unique_ptr<Method>()>& make_over_time);
 
 /// Names of the families that are left out. @throws std::invalid_argument for one that is not known

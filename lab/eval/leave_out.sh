@@ -70,5 +70,5 @@ score=("$bin/lookout-eval" --config config/catabot --scenes "$families" --leave-
 if [ -n "$tracks" ]; then
   "${score[@]}" --tracks --seeds "${seeds:-4}" --seconds 20 --blocks lab/eval/TRACKS.md | tee "$out/tables.txt"
 else
-  "${score[@]}" --methods ours,peers --seeds "${seeds:-60}" --seconds 0.3 --captures "${LOOKOUT_CAPTURES:-../shared/data/second_world}" | tee "$out/tables.txt"
+  "${score[@]}" --methods ours,peers --blocks lab/learned/README.md --seeds "${seeds:-60}" --seconds 0.3 --captures "${LOOKOUT_CAPTURES:-../shared/data/second_world}" | tee "$out/tables.txt"
 fi

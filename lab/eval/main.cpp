@@ -81,6 +81,8 @@ Options ParseOptions(int argc, char** argv) {
   needs_config(app.add_option("--scenes", comparison.scenes, "all, families (all of them), or names of scenes or .txtpb files"))->delimiter(',');
   auto* weights = needs_config(app.add_option("--weights", comparison.weights_folder, "folder of evidence: without-FAMILY.txtpb and all.txtpb"))
                       ->check(CLI::ExistingDirectory);
+  needs_config(app.add_option("--network", comparison.network_folder, "folder of the weights of SqueezeSeg (default: lab/learned/weights)"))
+      ->check(CLI::ExistingDirectory);
   auto* left_out = app.add_option("--leave-out", comparison.left_out, "families, or names of some: ours with evidence fitted without them, too")
                        ->delimiter(',')
                        ->needs(weights);

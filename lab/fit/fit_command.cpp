@@ -14,23 +14,14 @@
 #include "common/runtime/version.hpp"
 #include "lab/eval/methods/run_plan.hpp"
 #include "lab/fit/fit_evidence.hpp"
-#include "lab/sim/scene_file.hpp"
 
 namespace lookout::fit {
 namespace {
 
 eval::RunPlan PlanOf(const Options& options) {
-  eval::RunPlan plan{{}, options.first_seed, options.num_seeds, options.seconds, options.lidars};
+  const eval::RunPlan plan{eval::NamesOfScenes(options.scenes, options.config_folder), options.first_seed, options.num_seeds, options.seconds,
+                           options.lidars};
   eval::CheckLidars(options.lidars);
-  for (const auto& scene : options.scenes) {
-    if (scene != "families" && scene != "all") {
-      plan.scenes.push_back(scene);
-      continue;
-    }
-    for (const auto& known : scene == "families" ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder)) {
-      plan.scenes.push_back(known.name);
-    }
-  }
   plan.CheckSeeds(eval::SeedUse::kTuning);
   return plan;
 }

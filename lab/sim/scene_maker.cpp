@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/hash.hpp"
 #include "lab/sim/built.hpp"
 #include "lab/sim/coast.hpp"
 #include "lab/sim/family.hpp"
@@ -128,10 +129,7 @@ bool IsBadCorner(const Vector2d& before_m, const Vector2d& at_m, const Vector2d&
 // Families that begin alike would draw the same things from the same seed. Scenes with a fixed structure keep theirs.
 std::uint64_t SeedOf(const File& file, std::uint64_t seed) {
   if (!file.own_boat().has_free_by_m()) return seed;
-  // G. Fowler, L. Noll, K.-P. Vo: FNV-1a, 64 bits.
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : file.description()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  return seed ^ hash;
+  return seed ^ Fnv1a(file.description());
 }
 
 class Drawing {

@@ -16,6 +16,10 @@ namespace {
 
 // A sensor sends a packet every 1.3 ms.
 constexpr std::chrono::seconds kSilence(1);
+// A head that turns ends a scan in 0.2 s, the slowest in 0.4 s.
+constexpr std::chrono::seconds kNoScan(2);
+// A datagram may wait in the network; a clock of another second is told.
+constexpr std::chrono::milliseconds kMostClockDifference(500);
 constexpr std::chrono::seconds kRatePeriod(1);
 // A restart and what comes with it break the stream a few times.
 constexpr std::int64_t kMaxOutOfStreamPerS = 10;
@@ -139,6 +143,7 @@ std::string Service::SameAddressComplaint(const Sender& holder, int port, const 
 
 void Service::AdvanceTo(Utime host_time, std::optional<Utime> taken_until) {
   if (!silent_since_ || *silent_since_ > host_time) silent_since_ = host_time;
+  if (scanless_since_ && *scanless_since_ > host_time) scanless_since_ = host_time;
   now_ = host_time;
   if (!second_began_ || *second_began_ > host_time) second_began_ = host_time;
   if (const auto elapsed = host_time - *second_began_; elapsed >= kRatePeriod) {
@@ -250,7 +255,10 @@ void Service::Consume(const PacketBundle& bundle) {
   for (const auto& item : bundle.items) {
     if (item.udp_port == params_.data_port) {
       ++num_data_packets_;
-      if (reading_->decoder->OnDataPayload(item.host_time, bundle.PayloadOf(item))) silent_since_ = item.host_time;
+      if (!reading_->decoder->OnDataPayload(item.host_time, bundle.PayloadOf(item))) continue;
+      const bool was_silent = !scanless_since_ || !silent_since_ || item.host_time - *silent_since_ >= kSilence;
+      if (was_silent || std::exchange(has_scan_, false)) scanless_since_ = item.host_time;
+      silent_since_ = item.host_time;
     } else if (item.udp_port == params_.position_port) {
       reading_->decoder->OnPositionPayload(item.host_time, bundle.PayloadOf(item));
     } else {
@@ -261,6 +269,7 @@ void Service::Consume(const PacketBundle& bundle) {
 }
 
 void Service::PublishScan(const Scan& scan) {
+  if (!scan.is_partial_end) has_scan_ = true;
   NoteClock(scan.clock);
   bus::Publish(bus_, params_.number == 1 ? bus::kLidarClock : bus::kLidarClock2, ToClockMessage(scan, raw_seq_));
   for (const auto& part : ToScanMessages(scan, raw_seq_, bus::kMaxMessageBytes)) {
@@ -299,27 +308,39 @@ std::string Service::Complaint() const {
 std::string Service::OwnComplaint() const {
   if (!reading_) return "packets cannot be read yet: " + std::string(RowOf(params_.other->model).beam_file_is) + " is not there";
   if (!beams_complaint_.empty()) return beams_complaint_;
-  if (params_.input == Input::kOutside && silent_since_ && now_ - *silent_since_ >= kSilence) {
-    const auto seconds = std::to_string(std::chrono::floor<std::chrono::seconds>(now_ - *silent_since_).count());
+  const bool is_silent = params_.input == Input::kOutside && silent_since_ && now_ - *silent_since_ >= kSilence;
+  const auto seconds_since = [this](Utime time) { return std::to_string(std::chrono::floor<std::chrono::seconds>(now_ - time).count()); };
+  // Before silence, which may be of it.
+  const auto telemetry = reading_->decoder->telemetry();
+  if (telemetry && telemetry->is_shut_down) {
+    return "the lidar has shut down for its temperature: " + std::to_string(telemetry->top_board_celsius) + " degrees C at the top board, " +
+           std::to_string(telemetry->bottom_board_celsius) + " at the bottom board" +
+           (is_silent ? "; no lidar packets for " + seconds_since(*silent_since_) + " s" : "");
+  }
+  if (is_silent) {
     std::string refusal = reading_->decoder->last_refusal();
     if (refusal.empty() && !reading_->bundler.foreign_sensor().empty())
       refusal = "a packet of another sensor: " + std::string(reading_->bundler.foreign_sensor());
-    if (!refusal.empty()) return "no usable lidar packets for " + seconds + " s; the last was refused: " + refusal;
-    return "no lidar packets for " + seconds + " s";
+    if (!refusal.empty()) return "no usable lidar packets for " + seconds_since(*silent_since_) + " s; the last was refused: " + refusal;
+    return "no lidar packets for " + seconds_since(*silent_since_) + " s";
+  }
+  if (params_.input == Input::kOutside && scanless_since_ && now_ - *scanless_since_ >= kNoScan) {
+    return "lidar packets come, but no scan has ended for " + seconds_since(*scanless_since_) + " s: the head stands, or turns too slowly";
   }
   if (out_of_stream_per_s_ > kMaxOutOfStreamPerS) {
     return "the packets do not follow one another (" + std::to_string(out_of_stream_per_s_) +
            " breaks in the last second): two lidars on one port, or one whose clock or encoder jumps";
   }
-  const auto telemetry = reading_->decoder->telemetry();
-  if (telemetry && telemetry->is_shut_down) {
-    return "the lidar has shut down for its temperature: " + std::to_string(telemetry->top_board_celsius) + " degrees C at the top board, " +
-           std::to_string(telemetry->bottom_board_celsius) + " at the bottom board";
-  }
   const auto& clock = reading_->decoder->last_clock();
   if (params_.decoder.time == TimeChoice::kAuto && clock && clock->state == ClockState::kLocked && clock->source == TimeSource::kHost) {
     return "this computer's clock is " + Text(ToSeconds(clock->host_minus_sensor.value_or(std::chrono::microseconds(0))), 3) +
            " s ahead of the sensor's, which is locked to GNSS: scans carry the computer's time until it is set";
+  }
+  const auto host_minus_sensor = clock ? clock->host_minus_sensor.value_or(std::chrono::microseconds(0)) : std::chrono::microseconds(0);
+  if (params_.decoder.time == TimeChoice::kSensor && clock && clock->state == ClockState::kLocked &&
+      std::chrono::abs(host_minus_sensor) > kMostClockDifference) {
+    return "scans carry the sensor's time as configured, and this computer's clock is " + Text(ToSeconds(host_minus_sensor), 3) +
+           " s ahead of it: one of both is wrong";
   }
   if (params_.decoder.time == TimeChoice::kSensor && clock && clock->state != ClockState::kLocked) {
     return "scans carry the sensor's time as configured, but its clock is not locked to GNSS: " + std::string(Text(clock->state));

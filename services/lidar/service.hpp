@@ -90,12 +90,14 @@ class Service {
   std::int64_t num_beams_of_log_ = 0;      // tables of a log that are not that of the config
   std::int64_t num_waited_for_beams_ = 0;  // packets that came before the beams were known
   std::int64_t beams_seq_ = 0;
-  std::optional<Utime> beams_sent_;    // packets of that time followed
-  std::string beams_complaint_;        // of the last refused message
-  std::int64_t num_other_port_ = 0;    // payloads in a log that were recorded on ports other than the config says
-  std::optional<Utime> silent_since_;  // host time of the last usable data packet, or at which waiting began
-  Utime now_{};                        // host time so far
-  std::int64_t num_data_packets_ = 0;  // in the second that runs
+  std::optional<Utime> beams_sent_;      // packets of that time followed
+  std::string beams_complaint_;          // of the last refused message
+  std::int64_t num_other_port_ = 0;      // payloads in a log that were recorded on ports other than the config says
+  std::optional<Utime> silent_since_;    // host time of the last usable data packet, or at which waiting began
+  std::optional<Utime> scanless_since_;  // host time of the last scan, or of the first packet behind silence
+  bool has_scan_ = false;                // since the last packet
+  Utime now_{};                          // host time so far
+  std::int64_t num_data_packets_ = 0;    // in the second that runs
   std::int64_t data_packets_per_s_ = 0;
   std::int64_t num_out_of_stream_ = 0;  // until the last second
   std::int64_t out_of_stream_per_s_ = 0;

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "common/runtime/service_main.hpp"
+#include "common/runtime/version.hpp"
 #include "services/plotter/outputs.hpp"
 #include "services/plotter/params.hpp"
 #include "services/plotter/service.hpp"
@@ -13,7 +14,9 @@ namespace {
 constexpr std::chrono::milliseconds kTick(5);
 constexpr std::chrono::seconds kRemarkPeriod(1);
 
-void Run(lookout::runtime::Process& process, const lookout::plotter::Params& params) {
+void Run(lookout::runtime::Process& process, const lookout::plotter::Params& loaded) {
+  auto params = loaded;
+  params.version = lookout::runtime::Version();
   lookout::plotter::Links links;
   lookout::plotter::Service service(process.bus(), params, lookout::plotter::OpenOutputs(params, links));
   process.Every(kTick, [&] {

@@ -2,20 +2,25 @@
 
 namespace lookout::plotter {
 
-std::string N2kOutput::Text(const N2kMessage& message, Utime time) {
+int N2kOutput::NextSequence() {
   constexpr int kSequences = 8;
+  sequence_ = (sequence_ + 1) % kSequences;
+  return sequence_;
+}
+
+std::string N2kOutput::Text(const N2kMessage& message, Utime time) {
   if (params().format == Format::kN2kActisense) return ActisenseLine(message, time);
-  if (message.is_fast_packet) sequence_ = (sequence_ + 1) % kSequences;
-  return YdenLines(message, time, sequence_);
+  return YdenLines(message, time, message.is_fast_packet ? NextSequence() : 0);
 }
 
 void N2kOutput::SendOwnShip(const Told& told) {
-  if (!params().sends_own_ship || !told.own.is_placed() || told.own.is_estimated) return;
+  if (!IsReady() || !params().sends_own_ship || !told.own.is_placed() || told.own.is_estimated) return;
   Send(Text(PositionMessage(told.own), told.own.time));
   Send(Text(CourseMessage(told.own), told.own.time));
 }
 
 void N2kOutput::SendTargets(const Told& told) {
+  if (!IsReady()) return;
   for (const auto& ended : targets_.TakeEnded(told.targets)) {
     SendSurely(Text(TargetMessage(told.own, EndedAt(ended, told.own.time), ended.number), told.own.time));
   }

@@ -1,4 +1,4 @@
-// NMEA 2000 as text for one receiver.
+// NMEA 2000 as text for one receiver: programs that read what a gateway hears.
 #pragma once
 
 #include "services/plotter/core/nmea2000.hpp"
@@ -12,16 +12,22 @@ class N2kOutput : public Output {
   N2kOutput(const OutputParams& params, std::unique_ptr<Link> link, std::chrono::microseconds target_period)
       : Output(params, std::move(link)), targets_(target_period) {}
 
+ protected:
+  void SendNotices(const Told& /*told*/) override {}  // NMEA 2000's alerts want a device that answers their group functions
+  void SendAnew() override { targets_.Forget(); }
+  /// As it goes out: whole lines.
+  virtual std::string Text(const N2kMessage& message, Utime time);
+  /// Whether messages may be sent now.
+  virtual bool IsReady() const { return true; }
+  /// 0 to 7: of the next fast packet.
+  int NextSequence();
+
  private:
   void SendOwnShip(const Told& told) override;
   void SendTargets(const Told& told) override;
-  void SendNotices(const Told& /*told*/) override {}  // NMEA 2000's alerts want an answering device on the network
-  void SendAnew() override { targets_.Forget(); }
-
-  std::string Text(const N2kMessage& message, Utime time);
 
   TargetSchedule targets_;
-  int sequence_ = 0;  // of fast packets
+  int sequence_ = 0;
 };
 
 }  // namespace lookout::plotter

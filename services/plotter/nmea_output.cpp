@@ -16,13 +16,6 @@ constexpr std::chrono::milliseconds kFreshOwnShip(100);
 constexpr std::chrono::seconds kSlowRepeat(1);
 constexpr std::chrono::milliseconds kRefusalPeriod(100);
 
-// 0 to 9, and after 9 comes 1.
-int EscalationAfter(std::chrono::microseconds unacknowledged) {
-  constexpr int kMost = 9;
-  const auto count = unacknowledged / NmeaOutput::kEscalateAfter;
-  return count <= 0 ? 0 : static_cast<int>((count - 1) % kMost + 1);
-}
-
 }  // namespace
 
 NmeaOutput::NmeaOutput(const OutputParams& params, std::unique_ptr<Link> link, std::chrono::microseconds target_period, RevisionFile revisions)
@@ -73,8 +66,7 @@ std::vector<Notice> NmeaOutput::AsTold(const Told& told) const {
   std::vector<Notice> notices(told.notices.begin(), told.notices.end());
   for (auto& notice : notices) {
     if (!is_alf || notice.sound != Sound::kSilenced) notice.sound = Sound::kQuiet;
-    const bool wants = notice.level == Level::kWarning && notice.state == NoticeState::kActive;
-    if (is_alf && wants) notice.escalation = EscalationAfter(told.host_time - notice.changed);
+    if (is_alf) notice.escalation = EscalationOf(notice, told.host_time);
   }
   return notices;
 }

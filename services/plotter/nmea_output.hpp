@@ -16,7 +16,6 @@ class NmeaOutput : public Output {
  public:
   /// Of HBT and ALC, which go with ALF. A warning that nobody has acknowledged for so long is raised again.
   static constexpr std::chrono::seconds kListPeriod{30};
-  static constexpr std::chrono::minutes kEscalateAfter{5};
 
   NmeaOutput(const OutputParams& params, std::unique_ptr<Link> link, std::chrono::microseconds target_period,
              RevisionFile revisions = RevisionFile());

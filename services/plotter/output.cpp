@@ -76,9 +76,8 @@ bool Output::Send(const std::string& message) {
 }
 
 Commands Output::TakeCommands(const Told& told) {
-  constexpr int kMostMessages = 8;  // a flood holds nobody up
   Commands commands;
-  for (int i = 0; i < kMostMessages; ++i) {
+  for (int i = 0; i < most_read(); ++i) {
     const auto message = link_->Receive();
     if (!message) break;
     const auto read = Read(*message, told);

@@ -64,6 +64,10 @@ class Output {
   /// Received since the last call; empty where they are not accepted.
   Commands TakeCommands(const Told& told);
 
+  /// Why nothing can be sent now; empty = nothing is known to be wrong.
+  virtual std::string fault() const { return link_->fault(); }
+  virtual std::vector<Counter> counters() const { return link_->counters(); }
+
   /// Lines that could not be read.
   std::int64_t num_refused() const { return num_refused_; }
   /// Messages that must not be lost, and were, since the link took less than came.
@@ -80,6 +84,9 @@ class Output {
   virtual void SendAnew() = 0;
   /// A received message, whether or not commands are accepted.
   virtual Commands Read(const std::string& /*message*/, const Told& /*told*/) { return {}; }
+
+  /// Messages that are read at once: a flood holds nobody up.
+  virtual int most_read() const { return 8; }
 
   /// @return false where the link has no room now, or a message that must not be lost waits: try again
   bool Send(const std::string& message);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "services/plotter/mavlink_output.hpp"
+#include "services/plotter/n2k_device_output.hpp"
 #include "services/plotter/n2k_output.hpp"
 #include "services/plotter/nmea_output.hpp"
 #include "services/plotter/signal_k_output.hpp"
@@ -23,9 +24,20 @@ std::unique_ptr<Link> Open(const std::string& name, const Destination& to, Links
       return links.TcpClient({.name = name, .address = to.address, .port = to.port});
     case Destination::Kind::kSerial:
       return links.Serial({.name = name, .device = to.device.string(), .baud = to.baud});
+    case Destination::Kind::kCan:
+      return links.Can({.name = name, .interface = to.interface});
     default:
       return links.WebSocket({.name = name, .address = to.address, .port = to.port, .path = to.path, .token = to.token});
   }
+}
+
+N2kIdentity IdentityOf(const Params& params, const OutputParams& output) {
+  return {.name = N2kName(output.n2k.unique_number),
+          .preferred_address = static_cast<std::uint8_t>(output.n2k.preferred_address),
+          .model = "Lookout lidar look-out",
+          .software_version = params.version,
+          .serial_number = std::to_string(output.n2k.unique_number),
+          .sent_pgns = output.sends_own_ship ? std::vector<std::uint32_t>{129025, 129026, 128520} : std::vector<std::uint32_t>{128520}};
 }
 
 }  // namespace
@@ -38,6 +50,8 @@ std::unique_ptr<Output> MakeOutput(const Params& params, const OutputParams& out
       return std::make_unique<SignalKOutput>(output, std::move(link), params.boat);
     case Format::kMavlink:
       return std::make_unique<MavlinkOutput>(output, std::move(link));
+    case Format::kN2kDevice:
+      return std::make_unique<N2kDeviceOutput>(output, std::move(link), params.target_period, IdentityOf(params, output));
     default:
       return std::make_unique<N2kOutput>(output, std::move(link), params.target_period);
   }

@@ -19,6 +19,7 @@
 #include "config/schema/navigator.pb.h"
 #include "config/schema/plotter.pb.h"
 #include "config/schema/segmenter.pb.h"
+#include "services/plotter/core/n2k_device.hpp"
 
 namespace lookout::plotter {
 
@@ -36,6 +37,11 @@ bool IsName(const std::string& name) {
          std::ranges::all_of(name, [](char letter) { return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9'); });
 }
 
+bool IsInterfaceName(const std::string& name) {
+  constexpr std::size_t kMostBytes = 15;
+  return !name.empty() && name.size() <= kMostBytes && std::ranges::all_of(name, [](unsigned char letter) { return letter > ' ' && letter < 127; });
+}
+
 bool IsTalker(const std::string& talker) {
   return talker.size() == 2 && std::ranges::all_of(talker, [](char letter) { return letter >= 'A' && letter <= 'Z'; });
 }
@@ -48,6 +54,8 @@ Format ToFormat(config::PlotterOutput::Format format) {
       return Format::kN2kActisense;
     case config::PlotterOutput::N2K_YDEN:
       return Format::kN2kYden;
+    case config::PlotterOutput::N2K_DEVICE:
+      return Format::kN2kDevice;
     case config::PlotterOutput::MAVLINK:
       return Format::kMavlink;
     default:
@@ -73,10 +81,19 @@ MavlinkParams ToMavlink(const config::MavlinkOptions& options) {
           .sends_alerts = options.sends_alerts()};
 }
 
+// The unique number is the same at each start: of the boat's name and the output's.
+N2kParams ToN2k(const config::PlotterOutput& output, const std::string& boat) {
+  const auto& options = output.n2k();
+  return {.preferred_address = options.preferred_address(),
+          .unique_number =
+              options.has_unique_number() ? static_cast<std::uint32_t>(options.unique_number()) : UniqueNumberOf(boat + "/" + output.name())};
+}
+
 // Reads the outputs and collects their faults, each at the line where its output begins.
 class OutputsReader {
  public:
-  OutputsReader(fs::path folder, const config::Plotter& message) : folder_(std::move(folder)), message_(message) {
+  OutputsReader(fs::path folder, const config::Plotter& message, std::string boat)
+      : folder_(std::move(folder)), message_(message), boat_(std::move(boat)) {
     try {
       navigator_ = config::Load<config::Navigator>(folder_, "navigator.txtpb");
     } catch (const config::ConfigError&) {  // the navigator tells of it
@@ -139,10 +156,12 @@ class OutputsReader {
     params.target_talker = output.target_talker();
     params.own_ship_talker = output.own_ship_talker();
     params.takes_acknowledgements = output.takes_acknowledgements();
+    params.targets_as_vessels = output.targets_as_vessels();
     params.mavlink = ToMavlink(output.mavlink());
+    params.n2k = ToN2k(output, boat_);
     const int num_kinds = static_cast<int>(output.has_udp()) + static_cast<int>(output.has_tcp_server()) + static_cast<int>(output.has_tcp_client()) +
-                          static_cast<int>(output.has_serial()) + static_cast<int>(output.has_websocket());
-    Require(num_kinds == 1, fmt::format("must have one of udp, tcp_server, tcp_client, serial and websocket, and has {}", num_kinds));
+                          static_cast<int>(output.has_serial()) + static_cast<int>(output.has_websocket()) + static_cast<int>(output.has_can());
+    Require(num_kinds == 1, fmt::format("must have one of udp, tcp_server, tcp_client, serial, websocket and can, and has {}", num_kinds));
     if (num_kinds == 1) params.destination = ReadDestination(output);
     CheckFormat(output, params);
     if (num_kinds == 1) CheckAgainstNavigator(params);
@@ -153,8 +172,13 @@ class OutputsReader {
     const bool is_nmea = params.format == Format::kNmea0183;
     Require(!output.has_websocket() || params.format == Format::kSignalK, "a websocket carries format SIGNALK only");
     const bool is_mavlink = params.format == Format::kMavlink;
-    Require(!output.has_serial() || is_nmea || is_mavlink, "a serial port carries formats NMEA0183 and MAVLINK only");
+    const bool is_device = params.format == Format::kN2kDevice;
+    Require(!output.has_serial() || is_nmea || is_mavlink || is_device, "a serial port carries formats NMEA0183, N2K_DEVICE and MAVLINK only");
     if (is_mavlink) CheckMavlink(output);
+    Require(!is_device || output.has_tcp_client() || output.has_serial() || output.has_can(),
+            "format N2K_DEVICE goes over tcp_client or serial, to a gateway, or over can");
+    Require(is_device || (!output.has_can() && !output.has_n2k()), "can and n2k are of format N2K_DEVICE only");
+    Require(!params.targets_as_vessels || params.format == Format::kSignalK, "targets_as_vessels is of format SIGNALK only");
     Require(is_mavlink || !output.has_mavlink(), "mavlink is of format MAVLINK only");
     Require(!params.takes_acknowledgements || !output.has_udp(), "nothing comes back over udp: takes_acknowledgements must be false");
     Require(!params.takes_acknowledgements || is_nmea || params.format == Format::kSignalK, "NMEA 2000 and MAVLink bring no acknowledgements back");
@@ -213,6 +237,10 @@ class OutputsReader {
               fmt::format("serial.baud {} is none that serial ports have (4800, 9600, 38400, 115200 ...)", destination.baud));
       std::error_code error;
       Require(devices_.insert(fs::weakly_canonical(destination.device, error)).second, "the serial port belongs to an output before it");
+    } else if (output.has_can()) {
+      destination.kind = Destination::Kind::kCan;
+      destination.interface = output.can().interface();
+      Require(IsInterfaceName(destination.interface), "can.interface must be a name of 1 to 15 characters, as can0");
     } else {
       destination.kind = Destination::Kind::kWebSocket;
       destination.address = ReadAddress(output.websocket().address());
@@ -250,6 +278,7 @@ class OutputsReader {
 
   fs::path folder_;
   const config::Plotter& message_;
+  std::string boat_;
   config::Navigator navigator_;
   std::vector<std::string> faults_;
   std::set<std::string> names_;
@@ -268,6 +297,8 @@ std::string InWords(const Destination& to) {
       return fmt::format("TCP to {} port {}", to.address, to.port);
     case Destination::Kind::kSerial:
       return fmt::format("serial port {} at {} baud", to.device.string(), to.baud);
+    case Destination::Kind::kCan:
+      return "CAN interface " + to.interface;
     default:
       return fmt::format("WebSocket ws://{}:{}{} {}", to.address, to.port, to.path, to.token.empty() ? "without a token" : "with a token");
   }
@@ -276,11 +307,14 @@ std::string InWords(const Destination& to) {
 std::string InWords(const OutputParams& output) {
   switch (output.format) {
     case Format::kSignalK:
-      return "Signal K";
+      return output.targets_as_vessels ? "Signal K, targets also as vessels" : "Signal K";
     case Format::kN2kActisense:
       return "NMEA 2000 as Actisense text";
     case Format::kN2kYden:
       return "NMEA 2000 as YDEN text";
+    case Format::kN2kDevice:
+      return fmt::format("NMEA 2000 as a device of unique number {} that claims address {} first{}", output.n2k.unique_number,
+                         output.n2k.preferred_address, output.destination.kind == Destination::Kind::kCan ? "" : ", RAW text");
     case Format::kMavlink:
       return fmt::format("MAVLink 2 {} to {:g} m as system {} component {}{}",
                          output.mavlink.form == MavlinkForm::kPoints ? "OBSTACLE_DISTANCE_3D" : "OBSTACLE_DISTANCE", output.mavlink.max_distance_m,
@@ -336,7 +370,8 @@ Params LoadParams(const fs::path& config_folder) {
   const auto boat = faults.Take([&] { return config::LoadBoat(config_folder); });
   Params params;
   const auto message = faults.Take([&] { return config::Load<config::Plotter>(config_folder, std::string(kFile)); });
-  const auto outputs = faults.Take([&] { return message ? OutputsReader(config_folder, *message).Read() : std::vector<OutputParams>(); });
+  const auto outputs =
+      faults.Take([&] { return message ? OutputsReader(config_folder, *message, boat ? boat->name : "").Read() : std::vector<OutputParams>(); });
   faults.ThrowIfAny();
   params.takes_tentative = message->takes_tentative();
   params.sends_ais_targets = message->sends_ais_targets();

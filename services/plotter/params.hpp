@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,7 +13,7 @@
 
 namespace lookout::plotter {
 
-enum class Format { kNmea0183, kSignalK, kN2kActisense, kN2kYden, kMavlink };
+enum class Format { kNmea0183, kSignalK, kN2kActisense, kN2kYden, kN2kDevice, kMavlink };
 enum class SentTargets { kTtm, kTll, kNone };
 enum class SentAlerts { kNone, kAlr, kAlf };
 
@@ -26,13 +27,18 @@ struct MavlinkParams {
   bool sends_alerts = true;
 };
 
+struct N2kParams {
+  int preferred_address = 35;
+  std::uint32_t unique_number = 0;  // 21 bits of the NAME
+};
+
 /// The receiver of an output. Members that its kind does not use are empty.
 struct Destination {
-  enum class Kind { kUdp, kTcpServer, kTcpClient, kSerial, kWebSocket };
+  enum class Kind { kUdp, kTcpServer, kTcpClient, kSerial, kWebSocket, kCan };
   Kind kind = Kind::kUdp;
   std::string address = {};  // numeric
   int port = 0;
-  std::string interface = {};         // UDP
+  std::string interface = {};         // UDP, CAN
   int max_clients = 0;                // TCP server
   std::filesystem::path device = {};  // serial
   int baud = 0;
@@ -51,11 +57,14 @@ struct OutputParams {
   std::string target_talker = "RA";
   std::string own_ship_talker = "II";
   bool takes_acknowledgements = false;
+  bool targets_as_vessels = false;  // Signal K
   MavlinkParams mavlink = {};
+  N2kParams n2k = {};
 };
 
 struct Params {
-  std::string boat;  // its name, as in boat.txtpb
+  std::string boat;          // its name, as in boat.txtpb
+  std::string version = {};  // of this program
   bool takes_tentative = false;
   bool sends_ais_targets = true;  // such as AIS tells of
   std::chrono::microseconds target_period{2'500'000};

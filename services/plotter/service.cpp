@@ -320,7 +320,7 @@ HealthReport Service::Report() const {
   std::int64_t num_refused = 0;
   std::int64_t num_dropped = 0;
   for (const auto& output : outputs_) {
-    const auto counters = output->link().counters();
+    const auto counters = output->counters();
     report.counters.insert(report.counters.end(), counters.begin(), counters.end());
     num_refused += output->num_refused();
     num_dropped += output->num_dropped();
@@ -347,7 +347,7 @@ HealthReport Service::Report() const {
   }
   if (numbers_.num_without() > 0) report.Degrade(fmt::format("{} targets without a number: 00 to 99 are used up", numbers_.num_without()));
   for (const auto& output : outputs_) {
-    if (const auto fault = output->link().fault(); !fault.empty()) report.Degrade(fmt::format("output '{}': {}", output->params().name, fault));
+    if (const auto fault = output->fault(); !fault.empty()) report.Degrade(fmt::format("output '{}': {}", output->params().name, fault));
   }
   return report;
 }

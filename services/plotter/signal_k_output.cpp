@@ -16,28 +16,40 @@ void SignalKOutput::SendOwnShip(const Told& told) {
 }
 
 void SignalKOutput::SendTargets(const Told& told) {
-  for (const auto& ended : targets_.TakeEnded(told.targets)) SendSurely(TargetEndDelta(boat_, ended.target.id, told.own.time));
+  for (const auto& ended : targets_.TakeEnded(told.targets)) EndTarget(ended, told);
+  places_.Keep(told.targets, told.passed);
   for (const auto* target : targets_.Due(told.targets, told.passed)) {
-    if (!Send(TargetDelta(boat_, *target, told.own.time))) return;
-    targets_.NoteSent(*target, told.own.time, -1, told.passed);
+    const int place = places_.Of(target->id, told.passed);
+    if (!Send(TargetDelta(TargetContext(boat_, place), *target, told.own.time))) return;
+    if (params().targets_as_vessels && !Send(TargetDelta(VesselContext(boat_, place), *target, told.own.time))) return;
+    targets_.NoteSent(*target, told.own.time, place, told.passed);
   }
+}
+
+// Freeboard-SK takes no null for a position, and draws the vessel for minutes where it was last: by its name it says that it is gone.
+void SignalKOutput::EndTarget(const TargetSchedule::Sent& ended, const Told& told) {
+  SendSurely(TargetEndDelta(TargetContext(boat_, ended.number), told.own.time));
+  if (!params().targets_as_vessels) return;
+  SendSurely(TargetEndDelta(VesselContext(boat_, ended.number), told.own.time, "lost: " + TargetName(ended.target)));
 }
 
 // A server shows the last values until it is told otherwise.
 void SignalKOutput::EndTargets(const Told& told) {
-  for (const auto& ended : targets_.TakeEnded({})) SendSurely(TargetEndDelta(boat_, ended.target.id, told.own.time));
+  for (const auto& ended : targets_.TakeEnded({})) EndTarget(ended, told);
 }
 
 void SignalKOutput::SendNotices(const Told& told) {
   std::vector<Notice> notices(told.notices.begin(), told.notices.end());
   for (auto& notice : notices) {
     if (notice.sound == Sound::kSilenced) notice.sound = Sound::kQuiet;
+    notice.escalation = EscalationOf(notice, told.host_time);
   }
   for (const auto& [notice, revision, is_repeat] : notices_.Take(notices, told.passed)) {
     const auto key = RaisedKeyOf(notice);
     const auto [raised, is_new] = raised_.try_emplace(key, Raised{NoticeWord(notice), notice});
     const Notice& last = raised->second.notice;
-    if (!is_new && notice.state == NoticeState::kActive && (last.state != NoticeState::kActive || notice.level > last.level)) {
+    const bool is_graver = notice.level > last.level || notice.escalation != last.escalation;
+    if (!is_new && notice.state == NoticeState::kActive && (last.state != NoticeState::kActive || is_graver)) {
       auto ended = last;
       ended.state = NoticeState::kCleared;
       SendSurely(NoticeDelta(ended, raised->second.word, told.host_time), raised->second.word);

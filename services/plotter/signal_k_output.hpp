@@ -10,6 +10,7 @@
 
 #include "services/plotter/core/notice_schedule.hpp"
 #include "services/plotter/core/signal_k.hpp"
+#include "services/plotter/core/target_places.hpp"
 #include "services/plotter/core/target_schedule.hpp"
 #include "services/plotter/output.hpp"
 
@@ -30,10 +31,12 @@ class SignalKOutput : public Output {
   void SendAnew() override;
   Commands Read(const std::string& message, const Told& told) override;
 
+  void EndTarget(const TargetSchedule::Sent& ended, const Told& told);
   void EndLeftover(const NoticeEcho& echo, const Told& told);
 
   std::string boat_;
   TargetSchedule targets_{kTargetPeriod};
+  TargetPlaces places_;
   NoticeSchedule notices_;
   // Notices that were told, as they were last.
   struct Raised {

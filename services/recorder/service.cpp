@@ -28,6 +28,8 @@ constexpr std::size_t kMaxOwnRunInfos = 8;
 
 // AdvanceTo is called twice a second; a stop of the process is no minute that passed, and no silence of a publisher.
 constexpr std::chrono::milliseconds kMostPassed(600);
+// A busy disk finishes a block of 1 MB in this time.
+constexpr std::chrono::seconds kStandingDisk(2);
 
 // "20261121T134501Z"
 std::string FileStem(Utime time) {
@@ -255,6 +257,11 @@ HealthReport Service::Report() const {
   if (!status.is_recording && !(status.is_waiting_for_file && seen_.is_recording)) {
     report.state = HealthState::kFailed;
     report.reason = "not recording: " + Printable(status.fault);
+  } else if (status.standing >= kStandingDisk) {
+    report.state = HealthState::kFailed;
+    report.reason = "not recording: the disk has stood still for " +
+                    std::to_string(std::chrono::floor<std::chrono::seconds>(status.standing).count()) + " s; " +
+                    std::to_string(status.queue_bytes / 1'000'000) + " MB wait, " + std::to_string(status.num_lost()) + " events are lost";
   } else if (lost_.HasGrown(now)) {
     report.Degrade("recording again; " + std::to_string(status.num_lost()) + " events lost: " + Printable(status.fault));
   } else if (disturbed_.HasGrown(now) || status.wants_new_file) {

@@ -376,6 +376,15 @@ void WritePatches(const Folder& folder) {
   }
 }
 
+// NAME.json in the first line, then NAME.f16: two floats, which are no network.
+void WriteLearnedWeights(const Folder& folder) {
+  const std::string payload("\x00\x3c\x00\xc0", 4);
+  bus::Sha256 sha256;
+  sha256.Add(payload.data(), payload.size());
+  folder.Write("two", R"({"mean": [20, 0, 1, 0.1, 25], "deviation": [16, 13, 3, 0.1, 18], "trained_on": ["beach"], "weights_sha256": ")" +
+                          sha256.Finish() + "\"}\n" + payload);
+}
+
 // One input is a PCD file, or points and then their labels.
 void WritePointFiles(const Folder& folder) {
   using namespace data::test;
@@ -412,6 +421,12 @@ void WriteConfigs(const Folder& folder, const std::filesystem::path& boats) {
 void WriteAnswers(const Folder& folder) {
   folder.Write("ack", std::string("$IIACK,003*55"));
   folder.Write("acn", std::string("IIACN,102031.00,LKO,10002,3,A,C"));
+  folder.Write("requests", std::string("17:33:21.107 R 18EAFF01 00 EE 00\n17:33:21.107 R 18EA2301 14 F0 01\n17:33:21.107 R 18EA2301 00 EE 01\n"
+                                       "17:33:21.107 R 18EA2301 00 F1 01\n"));
+  folder.Write("contention", std::string("17:33:21.107 R 18EEFF23 01 00 00 00 00 00 00 C0\n17:33:21.107 T 18EEFF24 FF FF FF FF FF FF FF FF\n"
+                                         "17:33:21.107 R 18EEFFFE 01 00 00 00 00 00 00 C0\n"));
+  folder.Write("command", std::string("17:33:21.107 R 18ECFF01 20 09 00 02 FF D8 FE 00\n17:33:21.107 R 18EBFF01 01 45 23 C1 FF 00 BE 78\n"
+                                      "17:33:21.107 R 18EBFF01 02 C0 50 FF FF FF FF FF\n"));
   folder.Write("hello", std::string(R"({"name":"signalk-server","version":"2.23.0","self":"vessels.urn:1"})"));
   folder.Write("delta", std::string(R"({"context":"vessels.self","updates":[{"values":[{"path":"notifications.lookout.x","value":)"
                                     R"({"state":"alarm","method":[],"status":{"silenced":true,"acknowledged":true}}}]}]})"));
@@ -470,6 +485,7 @@ int main(int argc, char** argv) try {
   WriteScans(Folder(root / "fuzz_segmenter"));
   WritePatches(Folder(root / "fuzz_georeferencer"));
   WritePatches(Folder(root / "fuzz_tracker"));
+  WriteLearnedWeights(Folder(root / "fuzz_learned_weights"));
   WritePointFiles(Folder(root / "fuzz_point_file"));
   WritePageRequests(Folder(root / "fuzz_page_request"));
   WriteArchiveTexts(Folder(root / "fuzz_archive"));

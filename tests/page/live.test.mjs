@@ -57,7 +57,7 @@ test("before anything came the page says so, and that nobody keeps a look-out is
 });
 
 test("an alert is raised, seen and heard of by screen readers, refused without the token, acknowledged with it, and cleared", async () => {
-  await sail(120);
+  await sail(150);
   const stranger = await open();
   await isMode(stranger, "live");
   await stranger.waitForSelector(".alerts li.alert[data-gravity=warning]", { timeout: 40_000 });
@@ -141,6 +141,26 @@ test("one window that stands still costs the others nothing", async () => {
   assert.ok(alone >= 40, `${alone} messages in 4 s`);
   assert.ok(beside > 0.8 * alone, `${beside} messages in 4 s beside a stopped client, ${alone} without`);
   await page.context().close();
+});
+
+// It was told in the list of processes alone, which nobody had open.
+test("a process that dies stands on top, which leads to the list of processes, and no more when it is back", async () => {
+  for (const [width, height] of [[1440, 900], [360, 740]]) {
+    const page = await open({ width, height });
+    await isMode(page, "live");
+    await page.waitForFunction(() => { const line = document.querySelector(".unwell"); return line.hidden || !/plotter/.test(line.textContent); });
+    await wait(2000);  // until each process was heard
+    services.get("plotter").child.kill("SIGKILL");
+    await page.waitForSelector('.unwell[data-level=warning]:has-text("plotter (silent)"):visible', { timeout: 15_000 });
+    const { wide, left, right } = await page.$eval(".unwell", (line) => ({ wide: document.documentElement.clientWidth, left: line.getBoundingClientRect().left, right: line.getBoundingClientRect().right }));
+    assert.ok(left >= 0 && right <= wide + 0.5, `from ${left} to ${right} px of ${wide}`);
+    await page.click(".unwell");
+    await page.waitForFunction(() => document.querySelector(".processes").checkVisibility() && /plotter\s*SILENT/.test(document.querySelector(".processes").innerText));
+    await start("plotter");
+    await page.waitForFunction(() => !/plotter/.test(document.querySelector(".unwell:not([hidden])")?.textContent ?? ""), null, { timeout: 15_000 });
+    assert.deepEqual(page.errors, []);
+    await page.context().close();
+  }
 });
 
 test("the last minutes are looked back at, and left again", async () => {

@@ -1,4 +1,5 @@
-"""NMEA 2000 of lookout-plotter, as text of two makers' gateways, decoded by canboatjs: the truth, and the bytes that canboatjs would send itself."""
+"""NMEA 2000 of lookout-plotter, as text of two makers' gateways, decoded by canboatjs: the truth, and the bytes that canboatjs would send itself. And as a
+device of a network on which canboatjs's own device has the address that ours wants."""
 import json
 import math
 import os
@@ -118,7 +119,76 @@ def run_at(place, seconds):
             print('at %.5f %.5f, port %d: %s; positions at most %.4f m from the truth' % (*place, port, counts, error_m))
 
 
+DEVICE_PORT, DEVICE_SECONDS = 20013, 12
+DEVICE_CONFIG = 'output { name: "device" format: N2K_DEVICE tcp_client { address: "127.0.0.1" port: %d } n2k { unique_number: 74565 } }' % DEVICE_PORT
+REQUEST, ACKNOWLEDGEMENT, CLAIM, LIST, HEARTBEAT, PRODUCT = 59904, 59392, 60928, 126464, 126993, 126996
+THEIRS, OURS = 35, 36
+
+
+def ask(gateway, pgn, destination=OURS):
+    gateway.stdin.write(json.dumps({'pgn': REQUEST, 'dst': destination, 'prio': 6, 'fields': {'pgn': pgn}}) + '\n')
+    gateway.stdin.flush()
+
+
+def check_claims(ours):
+    claims = [note for note in ours if note['pgn'] == CLAIM]
+    check([note['src'] for note in claims[:2]] == [THEIRS, OURS], 'claims: %s' % claims)
+    fields = claims[0]['fields']
+    wanted = {'uniqueNumber': 74565, 'manufacturerCode': 2046, 'deviceFunction': 190, 'deviceClass': 'Navigation', 'industryGroup': 'Marine Industry',
+              'arbitraryAddressCapable': 'Yes'}
+    check(all(fields[name] == value for name, value in wanted.items()), str(fields))
+    # Until nobody has contended for 250 ms nothing else goes out, and the first request comes from nowhere.
+    check((ours[0]['pgn'], ours[0]['src']) == (REQUEST, 254), str(ours[0]))
+    first = next(note for note in ours if note['pgn'] not in (REQUEST, CLAIM))
+    check(first['src'] == OURS and first['time_s'] - claims[1]['time_s'] > 0.24, 'too early: %s' % first)
+    check(all(note['src'] == OURS for note in ours if note['time_s'] > claims[1]['time_s']), 'from an address that is not ours')
+    check(any(note['pgn'] == CLAIM and note['time_s'] > first['time_s'] for note in ours), 'who asks for addresses is not answered')
+
+
+def check_answers(ours):
+    product = [note['fields'] for note in ours if note['pgn'] == PRODUCT]
+    check(len(product) == 1, '%d times product information' % len(product))
+    check(product[0]['modelId'] == 'Lookout lidar look-out' and product[0]['modelSerialCode'] == '74565' and product[0]['nmea2000Version'] == 2.1 and
+          product[0]['loadEquivalency'] == 0 and product[0]['certificationLevel'] is None, str(product[0]))
+    # canboatjs reads on behind the end of a list.
+    lists = {note['fields']['functionCode']: [one['pgn'] for one in note['fields']['list'] if one['pgn']] for note in ours if note['pgn'] == LIST}
+    check(sorted(len(pgns) for pgns in lists.values()) == [3, 9], str(lists))
+    check({POSITION, COURSE, TARGET, HEARTBEAT, PRODUCT} <= set(max(lists.values(), key=len)), str(lists))
+    check([note['dst'] for note in ours if note['pgn'] == LIST] == [THEIRS, THEIRS], 'to whom the lists go')
+    refusals = [note for note in ours if note['pgn'] == ACKNOWLEDGEMENT]
+    check(len(refusals) == 1 and refusals[0]['fields']['pgn'] == 127488 and refusals[0]['fields']['control'] == 'NAK' and refusals[0]['dst'] == THEIRS,
+          str(refusals))
+    heartbeats = [note['fields'] for note in ours if note['pgn'] == HEARTBEAT]
+    check(heartbeats and seconds_of(heartbeats[0]['dataTransmitOffset']) == 60 and heartbeats[0]['equipmentStatus'] == 'Operational', str(heartbeats))
+
+
+def run_device():
+    with Trial(DEVICE_CONFIG) as trial:
+        npm = os.path.join(trial.build, 'peers/npm')
+        script = os.path.join(trial.source, 'tests/peers/n2k_gateway.cjs')
+        gateway = trial.start('gateway', ['node', script, npm, str(DEVICE_PORT)], pipe=True)
+        time.sleep(2.5)  # its device has claimed 35
+        plotter = trial.start_plotter()
+        feed = trial.start_feed(DEVICE_SECONDS, PLACES[0][0])
+        time.sleep(4.0)
+        for pgn, destination in ((PRODUCT, OURS), (LIST, OURS), (127488, OURS), (127488, 255), (CLAIM, 255)):
+            ask(gateway, pgn, destination)
+        check(feed.wait(DEVICE_SECONDS + 30) == 0, 'plotter_feed: exit code %s' % feed.returncode)
+        trial.end_plotter(plotter)
+        check(gateway.poll() is None, 'the gateway ended')
+        notes = [json.loads(line) for line in trial.output('gateway').splitlines()]
+        check(not [note for note in notes if 'error' in note], 'canboatjs: %s' % [note for note in notes if 'error' in note][:3])
+        ours = [note for note in notes if note.get('from') == 'ours']
+        check_claims(ours)
+        check_answers(ours)
+        targets = [note for note in ours if note['pgn'] == TARGET]
+        check(len(targets) >= 10 and all(note['src'] == OURS for note in targets), '%d targets' % len(targets))
+        told = max(note['time_s'] for note in ours if note['pgn'] == CLAIM and note['src'] == OURS and note['time_s'] <= targets[0]['time_s'])
+        print('device: at %d, as canboatjs has %d; %d messages, the first target %.2f s after the claim' % (OURS, THEIRS, len(ours), targets[0]['time_s'] - told))
+
+
 def run():
+    run_device()
     for place, seconds in PLACES:
         run_at(place, seconds)
 

@@ -125,9 +125,11 @@ class Trial:
                     print('--- %s' % name)
                     print(self.output(name[:-4])[-2000:])
 
-    def start(self, name, command, **options):
+    def start(self, name, command, pipe=False, **options):
+        """@param pipe  its standard input is written by the trial, as text"""
         out = open(os.path.join(self.folder, name + '.out'), 'w', encoding='utf-8')
-        process = subprocess.Popen(command, stdout=out, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, **options)
+        stdin = subprocess.PIPE if pipe else subprocess.DEVNULL
+        process = subprocess.Popen(command, stdout=out, stderr=subprocess.STDOUT, stdin=stdin, text=pipe, **options)
         self._processes.append(process)
         return process
 
@@ -141,8 +143,8 @@ class Trial:
         check(plotter.poll() is None, 'lookout-plotter ended')
         return plotter
 
-    def start_feed(self, seconds, place):
-        return self.start('feed', [os.path.join(self.build, 'tests/plotter_feed'), str(seconds), self.truth_file, str(place[0]), str(place[1])])
+    def start_feed(self, seconds, place, num_brief=0):
+        return self.start('feed', [os.path.join(self.build, 'tests/plotter_feed'), str(seconds), self.truth_file, str(place[0]), str(place[1]), str(num_brief)])
 
     def run_feed(self, seconds, place):
         code = self.start_feed(seconds, place).wait(seconds + 30)

@@ -167,9 +167,12 @@ std::vector<Track> Scene() {
 
 class Feed {
  public:
-  Feed(const Place& datum, const std::string& truth_file) : datum_(datum), bus_(bus::DefaultLcmUrl()), truth_(truth_file) {
+  /// @param num_brief  tracks beside those of Scene(): two more each second, each for 4 s
+  Feed(const Place& datum, const std::string& truth_file, int num_brief) : datum_(datum), bus_(bus::DefaultLcmUrl()), truth_(truth_file) {
     truth_.exceptions(std::ios::failbit | std::ios::badbit);
     truth_.precision(12);
+    for (int i = 0; i < num_brief; ++i)
+      scene_.push_back({.id = 200'000 + i, .east_m = 20.0 + i % 50, .north_m = 60.0, .from_s = 0.5 * i, .lost_s = 0.5 * i + 4.0});
     bus::Subscribe<alert_ack_t>(bus_, bus::kAlertAck, [this](const alert_ack_t& ack) { OnAck(ack); });
   }
 
@@ -375,13 +378,13 @@ class Feed {
 }  // namespace lookout::peers_test
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
-    std::cerr << "usage: plotter_feed SECONDS TRUTH_FILE LATITUDE_DEG LONGITUDE_DEG\n";
+  if (argc != 5 && argc != 6) {
+    std::cerr << "usage: plotter_feed SECONDS TRUTH_FILE LATITUDE_DEG LONGITUDE_DEG [NUMBER_OF_BRIEF_TRACKS]\n";
     return 2;
   }
   try {
     using namespace lookout::peers_test;
-    Feed feed({std::stod(argv[3]) * kDegree, std::stod(argv[4]) * kDegree}, argv[2]);
+    Feed feed({std::stod(argv[3]) * kDegree, std::stod(argv[4]) * kDegree}, argv[2], argc == 6 ? std::stoi(argv[5]) : 0);
     feed.Run(std::stod(argv[1]));
   } catch (const std::exception& error) {
     std::cerr << "plotter_feed: " << error.what() << "\n";

@@ -45,7 +45,7 @@ def write_json(file, value):
     os.chmod(file, 0o600)
 
 
-def configure(trial, is_secured):
+def configure(trial, is_secured, prune_minutes=1):
     """The server, with ways in besides its own and nothing that looks for others or for the network; and the token for lookout-plotter."""
     def way_in(name, kind, options):
         return {'id': name, 'enabled': True, 'pipeElements': [
@@ -57,7 +57,7 @@ def configure(trial, is_secured):
     os.mkdir(folder)
     off = ('plugins', 'wasm', 'appstore', 'webapps', 'playground', 'mfd_webapp', 'nmea-tcp', 'logfiles')
     settings = {'interfaces': {name: False for name in off}, 'port': 3000, 'ssl': False, 'mdns': False, 'wsCompression': False,
-                'accessLogging': False, 'pruneContextsMinutes': 1,
+                'accessLogging': False, 'pruneContextsMinutes': prune_minutes,
                 'pipedProviders': [way_in('udp', 'SignalK', {'type': 'udp', 'port': '20220'}),
                                    way_in('tcp', 'SignalK', {'type': 'tcp', 'host': '127.0.0.1', 'port': '20221'}),
                                    way_in('sentences', 'NMEA0183', {'type': 'udp', 'port': '20222'}),
@@ -112,8 +112,9 @@ def utime_us_of(text):
     return (calendar.timegm(time.strptime(match[1], '%Y-%m-%dT%H:%M:%S')) * 1000 + int(match[2])) * 1000
 
 
-def id_of(context):
-    return int(context.rsplit('-', 1)[1])
+def id_of(name):
+    """Of the track, by which a target is called where nobody gave it another name."""
+    return int(name.rsplit(' ', 1)[1])
 
 
 class Seen:
@@ -166,9 +167,11 @@ def look(seen):
     """By REST, once."""
     time_s = time.time()
     for context, target in (ask('/signalk/v1/api/targets') or {}).items():
+        if 'name' not in target:
+            continue  # a server that began anew was told the end of one that it never knew
         position = target['navigation']['position']
         check(context.startswith('lidar:') and '.' not in context, context)
-        seen.take_position(id_of(context), time_s, position['timestamp'], position['value'])
+        seen.take_position(id_of(target['name']), time_s, position['timestamp'], position['value'])
     own = ask('/signalk/v1/api/vessels/self/navigation/position')
     if own:
         seen.take_position(None, time_s, own['timestamp'], own['value'])
@@ -180,13 +183,16 @@ def look(seen):
 def read_stream(text):
     """What the WebSocket's client noted."""
     seen = Seen('WebSocket')
+    names = {}  # by context
     for line in text.splitlines():
         note = json.loads(line)
         message, time_s = note['message'], note['time_s']
         for update in message.get('updates', []):
             for value in update.get('values', []):
+                if value['path'] == '' and 'name' in value['value']:
+                    names[message['context']] = value['value']['name']
                 if value['path'] == 'navigation.position':
-                    target_id = id_of(message['context']) if message['context'].startswith('targets.') else None
+                    target_id = id_of(names[message['context']]) if message['context'].startswith('targets.') else None
                     seen.take_position(target_id, time_s, update['timestamp'], value['value'])
                 if value['path'].startswith('notifications.lookout.closestApproach'):
                     seen.notifications.append((time_s, value['value']))
@@ -199,6 +205,7 @@ def check_notifications(seen, acknowledged_s):
     first, last = seen.notifications[0][1], seen.notifications[-1][1]
     check(sorted(first['method']) == ['sound', 'visual'] and last['method'] == [], '%s: %s' % (seen.way, (first, last)))
     check('closest approach 2.5 m in 19 s' in first['message'] and '"Nu*$' in first['message'], '%s: %s' % (seen.way, first))
+    check(all('createdAt' in value for _, value in seen.notifications if value['message']), '%s: not when it was raised' % seen.way)
     if acknowledged_s is not None:
         loud = [value for time_s, value in seen.notifications if time_s > acknowledged_s + 1.0 and 'sound' in value['method']]
         check(not loud, '%s: sounds after it was acknowledged: %s' % (seen.way, loud))
@@ -255,7 +262,37 @@ def run_way(name):
 
 def is_shown(target_id):
     targets = ask('/signalk/v1/api/targets') or {}
-    return any(id_of(context) == target_id and target['navigation']['position']['value'] for context, target in targets.items())
+    return any('name' in target and id_of(target['name']) == target_id and target['navigation']['position']['value'] for target in targets.values())
+
+
+def run_contexts():
+    """Many targets that come and go: the server keeps each context of which it was told for an hour, so few of them are told."""
+    seconds, num_brief = 130, 260
+    with Trial('output { name: "signalk" format: SIGNALK %s targets_as_vessels: true }' % WAYS['websocket'][0]) as trial:
+        configure(trial, True, prune_minutes=60)
+        start_server(trial)
+        plotter = trial.start_plotter()
+        feed = trial.start_feed(seconds, PLACE, num_brief)
+        time.sleep(seconds - 10)
+        own = ask('/signalk/v1/api/self').split('.', 1)[1]
+        targets, vessels = ask('/signalk/v1/api/targets'), ask('/signalk/v1/api/vessels')
+        check(own in vessels, 'the own ship is not there: %s' % own)
+        del vessels[own]
+        names = {kind: sorted(one['name'] for one in contexts.values() if one['navigation']['position']['value'])
+                 for kind, contexts in (('targets', targets), ('vessels', vessels))}
+        check(len(names['targets']) == len(set(names['targets'])), 'one stands twice: %s' % names['targets'])
+        check(all('mmsi' not in vessel for vessel in vessels.values()), 'a vessel has an MMSI')
+        # Two a second, of which each stays for 4 s and then for the minute in which its place is free.
+        check(len(targets) <= 150 and abs(len(vessels) - len(targets)) <= 2, '%d targets, %d vessels' % (len(targets), len(vessels)))
+        check(10 <= len(names['targets']) <= 18 and len(set(names['targets']) ^ set(names['vessels'])) <= 4, str(names))
+        check(any(vessel['name'].startswith('lost: ') for vessel in vessels.values()), 'those that are gone bear their names')
+        feed.wait(30)
+        trial.end_plotter(plotter)
+        time.sleep(1.0)
+        alive = [one['name'] for kind in ('targets', 'vessels') for context, one in (ask('/signalk/v1/api/' + kind) or {}).items()
+                 if context != own and one['navigation']['position']['value']]
+        check(not alive, 'there after the end: %s' % alive)
+        print('contexts: %d for %d targets, %d of them alive' % (len(targets), num_brief + len(TARGETS), len(names['targets'])))
 
 
 def run_restart():
@@ -317,6 +354,7 @@ def run():
     for name in WAYS:
         run_way(name)
     run_restart()
+    run_contexts()
     run_other_inputs()
 
 

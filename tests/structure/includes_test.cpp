@@ -180,10 +180,11 @@ TEST(Structure, FoldersOfTheLaboratoryIncludeOnlyWhatTheyMay) {
                                                   // Of others the form of a scan, and NAV_RAW as the navigator makes it: for heads without packets.
                                                   {"sim", std::regex("common/.*|services/lidar/.*|lab/sim/.*|services/segmenter/core/scan[.]hpp|"
                                                                      "lab/data/scan_message[.]hpp|tools/replay/chain[.]hpp")},
-                                                  {"eval", std::regex("common/.*|services/.*|tools/.*|lab/(data|sim|eval)/.*")},
+                                                  {"eval", std::regex("common/.*|services/.*|tools/.*|lab/(data|sim|eval|learned)/.*")},
                                                   {"eval/methods", std::regex("(?!lab/eval/(tracks|report)).*")},
                                                   {"eval/tracks", std::regex("(?!lab/eval/report).*")},
-                                                  {"fit", std::regex("common/.*|services/segmenter/.*|lab/(data|sim|eval|fit)/.*")}};
+                                                  {"fit", std::regex("common/.*|services/segmenter/.*|lab/(data|sim|eval|fit)/.*")},
+                                                  {"learned", std::regex("common/.*|services/segmenter/core/.*|lab/(sim|eval|learned)/.*")}};
   const std::regex ours("(common|services|tools|lab)/.*");
   int num_checked = 0;
   for (const auto& file : SourcesBelow(kSources / "lab")) {

@@ -256,6 +256,19 @@ TEST_F(EvalLine, EvidenceThatKnowsWhatItIsScoredOnIsRefusedBeforeTheRun) {
   EXPECT_NE(Run(unknown).output.find("no such family: nowhere"), std::string::npos);
 }
 
+TEST_F(EvalLine, SqueezeSegIsARowWithTheWeightsOfTheSources) {
+  std::vector<std::string> line{"--scenes", "sparse", "--methods", "squeezeseg", "--seeds", "1", "--seconds", "0.3", "--csv", Path("csv")};
+  const auto scored = Run(line);
+  EXPECT_EQ(scored.exit_code, 0) << scored.output;
+  EXPECT_NE(ReadFile(Path("csv/table_1.csv")).find("\nSqueezeSeg,"), std::string::npos) << scored.output;
+  EXPECT_NE(ReadFile(Path("csv/table_3.csv")).find("\nSqueezeSeg,network,"), std::string::npos) << scored.output;
+  fs::create_directories(Path("nothing"));
+  line.insert(line.end(), {"--force", "--network", Path("nothing")});
+  const auto refused = Run(line);
+  EXPECT_EQ(refused.exit_code, 1) << refused.output;
+  EXPECT_NE(refused.output.find("holds no weights"), std::string::npos) << refused.output;
+}
+
 // A table anywhere below the folder of --csv once was in the way, though nothing is written there.
 TEST_F(EvalLine, TablesInSubfoldersAreNotInTheWay) {
   fs::create_directories(Path("csv/other"));

@@ -27,6 +27,7 @@ using std::chrono::seconds;
 constexpr int kTcpPort = 10111;
 constexpr int kUdpPort = 10112;
 constexpr int kSignalKPort = 10113;
+constexpr int kGatewayPort = 10114;
 
 // Reads what comes over a socket, when asked.
 class Receiver {
@@ -58,6 +59,7 @@ class Plotter : public LiveScene {
         << "output { name: 'tcp' format: NMEA0183 alerts: ALR takes_acknowledgements: true tcp_server { bind_address: '127.0.0.1' port: " << kTcpPort
         << " } }\noutput { name: 'udp' format: SIGNALK udp { address: '127.0.0.1' port: " << kUdpPort << " } }\n"
         << "output { name: 'sk' format: SIGNALK tcp_server { bind_address: '127.0.0.1' port: " << kSignalKPort << " } }\n"
+        << "output { name: 'n2k' format: N2K_DEVICE tcp_client { address: '127.0.0.1' port: " << kGatewayPort << " } }\n"
         << "output { name: 'gone' format: N2K_YDEN tcp_client { address: '127.0.0.1' port: 9 } }\n";
     Start("plotter");
   }
@@ -79,6 +81,25 @@ TEST_F(Plotter, SendsToEachReceiverInItsLanguage) {
   scene_.num_tracks = 2;
   ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), ",L,") == 1; })) << tcp.Read();
   EXPECT_EQ(child_->Terminate(), 0) << child_->Output();
+}
+
+TEST_F(Plotter, IsADeviceBehindAGateway) {
+  const Socket gateway(SOCK_STREAM);
+  ASSERT_TRUE(gateway.Bind(kGatewayPort) && gateway.Listen());
+  ASSERT_TRUE(Runs()) << child_->Output();
+  ASSERT_TRUE(Until([&] { return gateway.IsReadable(); })) << health_.reason;
+  Socket network = gateway.Accept();
+  std::string text;
+  const auto comes = [&](const std::string& line) { return Until([&] { return NumOf(text += network.Read(), line) > 0; }); };
+  ASSERT_TRUE(comes("18EEFF23 ")) << text;  // claims address 35
+  ASSERT_TRUE(comes("09F60823 ")) << text;  // a target
+  EXPECT_LT(text.find("18EEFF23 "), text.find("09F60823 "));
+  EXPECT_EQ(text.find("18EAFFFE 00 EE 00\r\n"), 0U);
+  network.Write("17:33:21.107 R 18EAFF01 14 F0 01\r\n");
+  EXPECT_TRUE(comes("19F01423 ")) << text;  // product information
+  network.Write("17:33:21.107 R 18EEFF23 01 00 00 00 00 00 00 C0\r\n");
+  EXPECT_TRUE(comes("09F60824 ")) << text;
+  EXPECT_TRUE(Until([&] { return Count("output_n2k_address") == 36; }));
 }
 
 // It ended where a port was taken, and lookout-up ended the look-out with it.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <initializer_list>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -32,6 +33,8 @@ constexpr seconds kObstaclesAge(2);
 // ALERTS come with every scan, and twice a second where none comes: this screen says when they do not.
 constexpr seconds kAlertsAge(1);
 constexpr std::string_view kTracker = "tracker";
+constexpr std::string_view kLidar = "lidar";
+constexpr std::string_view kSecondLidar = "lidar_2";
 
 template <typename T>
 std::int64_t NumLostBefore(const T& message, bus::SequenceWatch& sequence) {
@@ -43,14 +46,16 @@ std::int64_t NumLostBefore(const T& message, bus::SequenceWatch& sequence) {
 }
 
 std::string LevelText(const alerts_t& alerts, const alert_t& alert) {
+  if (alert.state == alert_t::STATE_RECTIFIED) return alert.level == alert_t::LEVEL_WARNING ? "WARNING OVER: " : "CAUTION OVER: ";
   const auto sound = messages::SoundOf(alerts, alert);
   return fmt::format("{}{}{}: ", sound == messages::AlertSound::kSounds ? "(*) " : "", alert.level == alert_t::LEVEL_WARNING ? "WARNING" : "CAUTION",
                      sound == messages::AlertSound::kSilenced ? " SILENCED" : "");
 }
 
-// In the order of the data flow.
+// In the order of the data flow. The second lidar's process is of the lidar's service, beside it.
 std::size_t PlaceInSuite(std::string_view process) {
-  return static_cast<std::size_t>(std::ranges::find(bus::kServices, process, &bus::ServiceRow::name) - bus::kServices.begin());
+  const auto service = process == kSecondLidar ? kLidar : process;
+  return static_cast<std::size_t>(std::ranges::find(bus::kServices, service, &bus::ServiceRow::name) - bus::kServices.begin());
 }
 bool IsOfSuite(std::string_view process) { return PlaceInSuite(process) < bus::kServices.size(); }
 
@@ -149,6 +154,11 @@ void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
     }
   });
   if (!is_good) ++traffic.num_bad;
+}
+
+void Board::CountAnew() {
+  for (auto& [name, traffic] : channels_) traffic.num_lost = traffic.num_bad = 0;
+  num_unlisted_ = num_unlisted_health_ = 0;
 }
 
 // Keeps the shown part of a message. @return false when it contradicts itself
@@ -350,16 +360,22 @@ const TrackPicture* Board::Tracks(TimePoint now) const { return tracks_ && now -
 std::vector<std::string> Board::AlertLines(TimePoint now) const {
   std::vector<std::string> lines;
   if (!alerts_) {
-    const auto is_tracker = [](const auto& entry) { return entry.first.name == kTracker; };
-    if (std::ranges::any_of(processes_, is_tracker)) lines.emplace_back("NO LOOK-OUT: no ALERTS yet");
+    // A tracker that does not run at all says nothing: the others do.
+    const auto lacks_alerts = [now](const auto& entry) {
+      return entry.first.name == kTracker || (IsOfSuite(entry.first.name) && now - entry.second.first >= kSilence);
+    };
+    if (std::ranges::any_of(processes_, lacks_alerts)) lines.emplace_back("NO LOOK-OUT: no ALERTS yet");
     return lines;
   }
   const bool is_old = now - alerts_time_ > kAlertsAge;
   if (is_old) lines.push_back(fmt::format("NO LOOK-OUT: no ALERTS for {:.0f} s", std::chrono::duration<double>(now - alerts_time_).count()));
-  for (const auto& alert : alerts_->alerts) {
-    if (alert.state != alert_t::STATE_ACTIVE || lines.size() == kMaxAlertLines) continue;
-    // What stood when they ended is no less near since.
-    lines.push_back((is_old ? "before that: " : LevelText(*alerts_, alert)) + alert.text);
+  for (const auto state : std::initializer_list<std::int32_t>{alert_t::STATE_ACTIVE, alert_t::STATE_RECTIFIED}) {
+    for (const auto& alert : alerts_->alerts) {
+      if (alert.state != state || lines.size() == kMaxAlertLines) continue;
+      // What stood when they ended is no less near since.
+      const bool is_over = state == alert_t::STATE_RECTIFIED;
+      lines.push_back((is_old ? std::string(is_over ? "before that, over: " : "before that: ") : LevelText(*alerts_, alert)) + alert.text);
+    }
   }
   return lines;
 }

@@ -27,7 +27,7 @@ namespace lookout::top {
 struct ChannelLine {
   std::string name;
   std::optional<Rate> rate;              // nullopt: too early to tell
-  std::optional<std::int64_t> num_lost;  // by gaps in seq, since the start; nullopt for a channel that is not of this project
+  std::optional<std::int64_t> num_lost;  // by gaps in seq, since the start or CountAnew; nullopt for a channel that is not of this project
   std::int64_t num_bad = 0;              // did not decode, or contradict themselves
   std::chrono::nanoseconds age{0};       // of its last message
   bool is_silent = false;                // for longer than it should be
@@ -120,6 +120,9 @@ class Board {
   /// A message of any channel. One that does not decode is counted. Memory is bounded: names above kMaxChannels are not told apart.
   void Take(std::string_view channel, Bytes bytes, TimePoint now);
 
+  /// Losses, bad messages and unlisted ones count from nought. What was heard, and what is silent, stays known.
+  void CountAnew();
+
   /// Those of the channel table in its order, then the others by name.
   std::vector<ChannelLine> Channels(TimePoint now) const;
 
@@ -136,9 +139,9 @@ class Board {
   /// @return nullptr when TRACKS never came, or for more than 2 s
   const TrackPicture* Tracks(TimePoint now) const;
 
-  /// Active alerts, the gravest first. "WARNING: ...", "CAUTION: ...", "(*) " before the one that sounds, "WARNING SILENCED: ...". At most
-  /// kMaxAlertLines. Or "NO LOOK-OUT: ...": a tracker was heard, and ALERTS do not come yet, or for more than 1 s no more; then the alerts that were
-  /// active.
+  /// Alerts that nobody acknowledged: the active ones, the gravest first, then those that are over (rectified). "WARNING: ...", "CAUTION: ...", "(*)
+  /// " before the one that sounds, "WARNING SILENCED: ...", "WARNING OVER: ...". At most kMaxAlertLines. Or "NO LOOK-OUT: ...": a tracker was heard,
+  /// or another process of the suite 3 s ago, and ALERTS do not come yet; or they came and do not for more than 1 s, then with the alerts of before.
   std::vector<std::string> AlertLines(TimePoint now) const;
   static constexpr std::size_t kMaxAlertLines = 4;
 

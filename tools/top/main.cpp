@@ -79,7 +79,7 @@ class StopSignals {
   int descriptor_;
 };
 
-// A bus and its messages. The board may be begun anew.
+// A bus and its messages.
 class Listener {
  public:
   explicit Listener(const std::string& lcm_url) : bus_(lcm_url), board_(Clock::now()) {
@@ -102,7 +102,7 @@ class Listener {
     return true;
   }
 
-  void Reset() { board_ = lookout::top::Board(Clock::now()); }
+  void CountAnew() { board_.CountAnew(); }
   const lookout::top::Board& board() const { return board_; }
 
  private:
@@ -140,7 +140,7 @@ void Watch(const Options& options) {
     bool is_changed = false;
     for (int key = terminal.Key(); key != 0; key = terminal.Key()) {
       if (key == 'q' || key == 'Q') return;
-      if (key == 'c') listener.Reset();
+      if (key == 'c') listener.CountAnew();
       if (key == 's') sure_only = !sure_only;
       if (key == 't') has_tracks = !has_tracks;
       is_changed = true;

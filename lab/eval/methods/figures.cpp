@@ -15,6 +15,7 @@
 
 #include "common/io/output_file.hpp"
 #include "common/runtime/version.hpp"
+#include "lab/eval/methods/leave_out.hpp"
 #include "lab/eval/methods/result_tables.hpp"
 
 namespace lookout::eval {
@@ -25,7 +26,7 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 36> kFigureNames{"main",
+constexpr std::array<std::string_view, 40> kFigureNames{"main",
                                                         "times",
                                                         "miou",
                                                         "false",
@@ -59,6 +60,10 @@ constexpr std::array<std::string_view, 36> kFigureNames{"main",
                                                         "long_alerts_verdicts",
                                                         "long_alerts_causes",
                                                         "long_alerts_dangers",
+                                                        "learned",
+                                                        "learned-lost",
+                                                        "learned-families",
+                                                        "learned-families-lost",
                                                         "sensors",
                                                         "sensors_families"};
 
@@ -90,8 +95,10 @@ std::vector<std::size_t> SideBySide(const Row& header, const Results& results) {
 
 bool IsAny(const std::string& /*text*/) { return true; }
 
+bool IsLearned(const std::string& method) { return method.starts_with("SqueezeSeg"); }
+
 bool IsOfInterest(const std::string& method) {
-  return method.starts_with("ours") || method == "paper W=1800" || method.find("(tuned") != std::string::npos;
+  return method.starts_with("ours") || method == "paper W=1800" || method.find("(tuned") != std::string::npos || IsLearned(method);
 }
 
 bool IsPeerName(const std::string& method) { return !method.starts_with("ours") && !method.starts_with("paper"); }
@@ -243,6 +250,24 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
       "ablation", "ablation", "In print: 460 components and 72 ms with the search, 1604 and 297 ms without.",
       [](const std::string& method) { return method.starts_with("paper W=") && method.find("90 deg") == std::string::npos; },
       [](const std::string& heading) { return !heading.ends_with("p99_ms"); });
+  if (std::ranges::any_of(results.methods, IsLearned, &MethodResult::method)) {
+    const bool is_left_out = std::ranges::any_of(results.methods, [](const auto& method) { return method.method.starts_with(kLeftOut); });
+    const std::string name = is_left_out ? "learned-families" : "learned";
+    add_table(
+        name, "overall",
+        fmt::format("mIoU, of it over objects in the water (water), things with a segment: means over the scenes, %; false segments a scan; time "
+                    "of a scan on one core ({}).",
+                    results.computer),
+        IsOfInterest, [](const std::string& heading) {
+          return std::ranges::any_of(std::array{"method", "mIoU_%", "water_%", "false", "with_segment_%", "median_ms"},
+                                     [&](std::string_view end) { return heading.ends_with(end); });
+        });
+    add_table(name + "-lost", "things_lost", "Things of 5 returns or more with an IoU below 0.5, by what became of them, % of all things.",
+              IsOfInterest, [](const std::string& heading) {
+                return !std::ranges::any_of(std::array{"near_land", "near_land_found_%", "land_segments", "segments_of_land_object"},
+                                            [&](std::string_view end) { return heading.ends_with(end); });
+              });
+  }
   if (const auto sweep = std::ranges::find_if_not(results.curves, &std::string::empty, &Curve::value_of_boat); sweep != results.curves.end()) {
     add("sweeps",
         fmt::format("One field at a time, all else as it is. mIoU of all segments, mean over the {} scenes with objects, on seeds of tuning ({}).",

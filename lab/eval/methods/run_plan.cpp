@@ -37,6 +37,19 @@ void CheckLidars(const std::vector<std::string>& names) {
   }
 }
 
+std::vector<std::string> NamesOfScenes(const std::vector<std::string>& names, const std::filesystem::path& config_folder) {
+  std::vector<std::string> scenes;
+  scenes.reserve(names.size());
+  for (const auto& name : names) {
+    if (name != "families" && name != "all") {
+      scenes.push_back(name);
+      continue;
+    }
+    for (const auto& known : name == "families" ? sim::ListFamilies(config_folder) : sim::ListScenes(config_folder)) scenes.push_back(known.name);
+  }
+  return scenes;
+}
+
 std::string SceneLabel(const std::string& name_or_path) { return std::filesystem::path(name_or_path).stem().string(); }
 
 namespace {

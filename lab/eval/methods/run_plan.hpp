@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ struct RunPlan {
   /// @throws std::invalid_argument when one of the seeds is of the other range; says both ranges
   void CheckSeeds(SeedUse use) const;
 };
+
+/// Names of scenes: `families` and `all` (scenes that are no families) become those of the folder, others stay.
+std::vector<std::string> NamesOfScenes(const std::vector<std::string>& names, const std::filesystem::path& config_folder);
 
 /// Checks names of heads. @throws std::invalid_argument for one that is none; it says which there are
 void CheckLidars(const std::vector<std::string>& names);

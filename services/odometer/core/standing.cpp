@@ -157,6 +157,8 @@ bool RangeImage::Describe(int column, int ring, TimedPoint& point) const {
 
 std::vector<TimedPoint> StandingPoints(const Scan& scan, double sample_m, const StandingParams& params) {
   std::vector<TimedPoint> points;
+  // A torn scan of so few columns tells of no surface, and columns are looked at up to kReach to either side.
+  if (scan.azimuth_rad.size() <= 2 * kReach) return points;
   const RangeImage image(scan, params);
   CubeIndex cubes;
   const std::int64_t end_ns = (scan.end_time - scan.time).count() * 1000;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <vector>
+
+#include "common/bus/services.hpp"
 
 namespace lookout::page {
 
@@ -18,6 +21,17 @@ std::string With(std::string object, std::string_view name, std::string_view val
   return object.append(",\"").append(name).append("\":").append(value).append("}");
 }
 
+// Of the boat's processes as HEALTH has them; that of a second lidar is a process of its own.
+const std::vector<std::string_view>& ProcessNames() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> all{"lidar_2"};
+    all.reserve(bus::kServices.size() + 1);
+    for (const auto& service : bus::kServices) all.push_back(service.name);
+    return all;
+  }();
+  return names;
+}
+
 }  // namespace
 
 std::string HelloText(const Hello& hello, std::string_view sources) {
@@ -27,6 +41,7 @@ std::string HelloText(const Hello& hello, std::string_view sources) {
                     {"host", hello.host},
                     {"server_utime_us", ToUtimeUs(hello.server_time)},
                     {"channels", ChannelNames()},
+                    {"processes", ProcessNames()},
                     {"may_acknowledge", hello.may_acknowledge}}),
               "sources", sources);
 }

@@ -15,8 +15,7 @@ namespace lookout::plotter {
 namespace {
 
 // This computer as a device on the network: an address that gateways replace by their own.
-constexpr std::uint32_t kSourceAddress = 0x23;
-constexpr std::uint32_t kEverybody = 0xFF;
+constexpr std::uint8_t kSourceAddress = 0x23;
 constexpr std::uint8_t kNoSid = 0xFF;
 
 // Little-endian. Where a value is not known or does not fit: the greatest of its field ("not available").
@@ -78,9 +77,6 @@ std::uint8_t StatusOf(TargetState state) {
   return state == TargetState::kTracking ? 2 : 3;
 }
 
-// 29 bits: priority, PGN, source. PGNs of this file go to everybody (PDU2), so the PGN has no destination in it.
-std::uint32_t CanId(const N2kMessage& message) { return static_cast<std::uint32_t>(message.priority) << 26U | message.pgn << 8U | kSourceAddress; }
-
 }  // namespace
 
 N2kMessage PositionMessage(const OwnShip& own) {
@@ -125,35 +121,16 @@ N2kMessage TargetMessage(const OwnShip& own, const Target& target, int number) {
 std::string ActisenseLine(const N2kMessage& message, Utime time) {
   const auto clock = ClockOf(time);
   auto line = fmt::format("A{:02}{:02}{:02}.{:03} {:02X}{:02X}{:X} {:05X} ", clock.hours, clock.minutes, clock.seconds, clock.milliseconds,
-                          kSourceAddress, kEverybody, message.priority, message.pgn);
+                          kSourceAddress, kN2kEverybody, message.priority, message.pgn);
   for (const auto byte : message.payload) line += fmt::format("{:02X}", byte);
   return line + "\r\n";
 }
 
 std::string YdenLines(const N2kMessage& message, Utime time, int sequence) {
-  constexpr std::size_t kFirst = 6;  // bytes of payload in the first frame of a fast packet
-  constexpr std::size_t kNext = 7;   // and in the others
-  constexpr std::size_t kFrame = 8;
   const auto clock = ClockOf(time);
-  const auto head = fmt::format("{:02}:{:02}:{:02}.{:03} R {:08X}", clock.hours, clock.minutes, clock.seconds, clock.milliseconds, CanId(message));
-  const auto line = [&head](const std::vector<std::uint8_t>& frame) {
-    auto text = head;
-    for (const auto byte : frame) text += fmt::format(" {:02X}", byte);
-    return text + "\r\n";
-  };
-  if (!message.is_fast_packet) return line(message.payload);
+  const auto head = fmt::format("{:02}:{:02}:{:02}.{:03} R ", clock.hours, clock.minutes, clock.seconds, clock.milliseconds);
   std::string lines;
-  std::size_t done = 0;
-  for (unsigned index = 0; done < message.payload.size() || index == 0; ++index) {
-    std::vector<std::uint8_t> frame{static_cast<std::uint8_t>(static_cast<unsigned>(sequence) << 5U | index)};
-    if (index == 0) frame.push_back(static_cast<std::uint8_t>(message.payload.size()));
-    const auto end = std::min(done + (index == 0 ? kFirst : kNext), message.payload.size());
-    frame.insert(frame.end(), message.payload.begin() + static_cast<std::ptrdiff_t>(done),
-                 message.payload.begin() + static_cast<std::ptrdiff_t>(end));
-    frame.resize(kFrame, 0xFF);
-    done = end;
-    lines += line(frame);
-  }
+  for (const auto& frame : FramesOf(message, kSourceAddress, sequence)) lines += head + RawLine(frame);
   return lines;
 }
 

@@ -3,23 +3,14 @@
 // tests).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "services/plotter/core/n2k_frame.hpp"
 #include "services/plotter/core/scene.hpp"
 
 namespace lookout::plotter {
-
-struct N2kMessage {
-  std::uint32_t pgn = 0;
-  std::uint8_t priority = 0;  // 0 (highest) to 7
-  bool is_fast_packet = false;
-  std::vector<std::uint8_t> payload;  // up to 8 bytes; of a fast packet up to 223
-};
-
-inline constexpr std::size_t kMostFastPacketBytes = 223;
 
 /// 129025 Position, Rapid Update. Precondition: own.is_placed().
 N2kMessage PositionMessage(const OwnShip& own);

@@ -22,6 +22,12 @@ RaisedKey RaisedKeyOf(const Notice& notice);
 /// The same as a text.
 std::string SubjectOf(const Notice& notice);
 
+/// A warning that nobody has acknowledged is told anew after each so long.
+inline constexpr std::chrono::minutes kEscalateAfter{5};
+
+/// How often a warning has been told anew: 0 to 9, and after 9 comes 1. 0 of what wants no acknowledgement.
+int EscalationOf(const Notice& notice, Utime host_time);
+
 /// A notice as it was told last.
 struct ToldNotice {
   Notice notice;

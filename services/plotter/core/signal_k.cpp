@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
+#include "common/core/hash.hpp"
 #include "common/core/printable.hpp"
 
 namespace lookout::plotter {
@@ -63,8 +65,6 @@ class Delta {
   Utime time_;
   Json values_ = Json::array();
 };
-
-std::string ContextOf(std::string_view boat, std::int64_t target_id) { return fmt::format("targets.lidar:{}-{}", boat, target_id); }
 
 std::string_view StateOf(const Notice& notice) {
   switch (notice.state) {
@@ -155,9 +155,21 @@ std::string OwnShipDelta(const OwnShip& own) {
   return delta.Text();
 }
 
-std::string TargetDelta(std::string_view boat, const Target& target, Utime time) {
-  Delta delta(ContextOf(boat, target.id), time);
-  delta.Add("", {{"name", target.given_name.empty() ? target.name : PrintableLines(target.given_name)}});
+std::string TargetContext(std::string_view boat, int place) { return fmt::format("targets.lidar:{}-{}", boat, place); }
+
+std::string VesselContext(std::string_view boat, int place) {
+  // As the server wants them: version 4, variant 2.
+  const auto first = Fnv1a(fmt::format("{}-{}", boat, place));
+  const auto second = Fnv1a(fmt::format("{}-{} lidar", boat, place));
+  return fmt::format("vessels.urn:mrn:signalk:uuid:{:08x}-{:04x}-4{:03x}-{:x}{:03x}-{:012x}", first >> 32U, first >> 16U & 0xFFFFU, first & 0xFFFU,
+                     8U | (second >> 60U & 3U), second >> 48U & 0xFFFU, second & 0xFFFF'FFFF'FFFFU);
+}
+
+std::string TargetName(const Target& target) { return target.given_name.empty() ? target.name : PrintableLines(target.given_name); }
+
+std::string TargetDelta(std::string_view context, const Target& target, Utime time) {
+  Delta delta(std::string(context), time);
+  delta.Add("", {{"name", TargetName(target)}});
   delta.Add("navigation.position", PositionJson(target.position));
   delta.Add("navigation.courseOverGroundTrue", Angle(target.course_rad));
   delta.Add("navigation.speedOverGround", Number(target.speed_mps, 1e3));
@@ -167,21 +179,25 @@ std::string TargetDelta(std::string_view boat, const Target& target, Utime time)
   return delta.Text();
 }
 
-std::string TargetEndDelta(std::string_view boat, std::int64_t target_id, Utime time) {
-  Delta delta(ContextOf(boat, target_id), time);
+std::string TargetEndDelta(std::string_view context, Utime time, std::string_view new_name) {
+  Delta delta(std::string(context), time);
+  if (!new_name.empty()) delta.Add("", {{"name", new_name}});
   for (const char* path : {"navigation.position", "navigation.courseOverGroundTrue", "navigation.speedOverGround", "navigation.closestApproach"})
     delta.Add(path, nullptr);
   return delta.Text();
 }
 
 std::string NoticeWord(const Notice& notice) {
-  return fmt::format("{}{}at{}", CauseWord(notice.cause), std::abs(notice.id), ToUtimeUs(notice.changed));
+  const auto word = fmt::format("{}{}at{}", CauseWord(notice.cause), std::abs(notice.id), ToUtimeUs(notice.changed));
+  return notice.escalation > 0 ? word + fmt::format("escalated{}", notice.escalation) : word;
 }
 
 std::string NoticeDelta(const Notice& notice, std::string_view word, Utime time) {
   Delta delta("vessels.self", time);
-  delta.Add(fmt::format("{}{}", kNotifications, word),
-            {{"state", StateOf(notice)}, {"method", MethodsOf(notice)}, {"message", PrintableLines(notice.text)}});
+  Json value{
+      {"state", StateOf(notice)}, {"method", MethodsOf(notice)}, {"message", PrintableLines(notice.text)}, {"createdAt", TimeText(notice.raised)}};
+  if (notice.state == NoticeState::kAcknowledged) value["acknowledgeStatus"] = "Yes";
+  delta.Add(fmt::format("{}{}", kNotifications, word), std::move(value));
   return delta.Text();
 }
 

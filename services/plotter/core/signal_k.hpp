@@ -17,17 +17,28 @@ std::string BoatWord(std::string_view boat);
 /// navigation.* of vessels.self. Unknown values are null, so that nothing old stays.
 std::string OwnShipDelta(const OwnShip& own);
 
-/// targets.lidar:<boat>-<id>: position, course, speed, size, closest approach (hull to hull).
-/// @param boat  BoatWord
-std::string TargetDelta(std::string_view boat, const Target& target, Utime time);
+/// targets.lidar:<boat>-<place>.
+/// @param boat   BoatWord
+/// @param place  as of TargetPlaces
+std::string TargetContext(std::string_view boat, int place);
+/// vessels.urn:mrn:signalk:uuid:<uuid>, the same for this boat and place at each start. No MMSI: nobody has given it one.
+std::string VesselContext(std::string_view boat, int place);
+/// As people, or AIS, call it, else as its track is called.
+std::string TargetName(const Target& target);
+/// Name, position, course, speed, size, closest approach (hull to hull).
+std::string TargetDelta(std::string_view context, const Target& target, Utime time);
 /// Its end: position, course, speed and closest approach are null.
-std::string TargetEndDelta(std::string_view boat, std::int64_t target_id, Utime time);
+///
+/// @param new_name  for displays that keep the last position, and show the name beside it; empty: it keeps its own
+std::string TargetEndDelta(std::string_view context, Utime time, std::string_view new_name = {});
 
 /// notifications.lookout.<word>: warn for a caution, alarm for a warning; with sound where it is the one that sounds; alert for one that is over and
-/// was not acknowledged; normal when it is over.
+/// was not acknowledged; normal when it is over. It says when it was raised, and that it is acknowledged, wherever that was done: then the server's
+/// own status says so, too.
 std::string NoticeDelta(const Notice& notice, std::string_view word, Utime time);
 
-/// Names one raising of an alert. A server remembers acknowledgements by path: a user hears nothing of a new alert under an old path.
+/// Names one raising of an alert, and one escalation of it. A server remembers acknowledgements by path: a user hears nothing of a new alert under an
+/// old path.
 std::string NoticeWord(const Notice& notice);
 
 /// The subscription by which a server sends notifications back.

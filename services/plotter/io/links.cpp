@@ -27,6 +27,7 @@ std::unique_ptr<Link> Links::Udp(const UdpOptions& options) { return MakeUdpPort
 std::unique_ptr<Link> Links::TcpServer(const TcpServerOptions& options) { return MakeTcpServerPort(loop_, options); }
 std::unique_ptr<Link> Links::TcpClient(const TcpClientOptions& options) { return MakeTcpClientPort(loop_, options); }
 std::unique_ptr<Link> Links::Serial(const SerialOptions& options) { return MakeSerialPort(loop_, options); }
+std::unique_ptr<Link> Links::Can(const CanOptions& options) { return MakeCanPort(loop_, options); }
 std::unique_ptr<Link> Links::WebSocket(const WebSocketOptions& options) { return MakeWebSocketPort(loop_, options); }
 
 void Links::Poll() { loop_->Poll(); }

@@ -38,6 +38,11 @@ struct SerialOptions {
   int baud = 0;
 };
 
+struct CanOptions {
+  std::string name;
+  std::string interface;  // "can0"
+};
+
 struct WebSocketOptions {
   std::string name;
   std::string address;
@@ -71,6 +76,9 @@ class Links {
   /// @throws std::runtime_error when the address is not numeric
   std::unique_ptr<Link> TcpClient(const TcpClientOptions& options);
   std::unique_ptr<Link> Serial(const SerialOptions& options);
+  /// SocketCAN. Its messages are lines of RAW text (core/n2k_frame.hpp), a frame each; of what comes only requests, claims of addresses and
+  /// broadcasts of several packets are told, as heard lines without a time. Anything else in a message is counted as dropped.
+  std::unique_ptr<Link> Can(const CanOptions& options);
   /// @throws std::runtime_error when the address is not numeric, or path or token hold a character that cannot stand in a request (blanks, line ends)
   std::unique_ptr<Link> WebSocket(const WebSocketOptions& options);
 

@@ -11,6 +11,7 @@ std::unique_ptr<Port> MakeUdpPort(std::shared_ptr<Loop> loop, const UdpOptions& 
 std::unique_ptr<Port> MakeTcpServerPort(std::shared_ptr<Loop> loop, const TcpServerOptions& options);
 std::unique_ptr<Port> MakeTcpClientPort(std::shared_ptr<Loop> loop, const TcpClientOptions& options);
 std::unique_ptr<Port> MakeSerialPort(std::shared_ptr<Loop> loop, const SerialOptions& options);
+std::unique_ptr<Port> MakeCanPort(std::shared_ptr<Loop> loop, const CanOptions& options);
 std::unique_ptr<Port> MakeWebSocketPort(std::shared_ptr<Loop> loop, const WebSocketOptions& options);
 
 }  // namespace lookout::plotter

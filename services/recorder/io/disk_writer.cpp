@@ -107,7 +107,9 @@ void DiskWriter::Flush() {
 
 DiskStatus DiskWriter::Status() const {
   const std::lock_guard lock(mutex_);
-  return status_;
+  auto status = status_;
+  if (given_) status.standing = std::chrono::floor<std::chrono::milliseconds>(std::chrono::steady_clock::now() - *given_);
+  return status;
 }
 
 void DiskWriter::Run() {
@@ -122,16 +124,19 @@ void DiskWriter::Run() {
       num_flushes = num_flushes_wanted_;
       is_last = is_stopping_;
       must_sync = is_last || num_flushes > num_flushes_done_;
+      given_ = std::chrono::steady_clock::now();
     }
     // Taken from the front, so that memory goes with the queue.
     for (; !blocks.empty(); blocks.pop_front()) {
       WriteBlock(blocks.front());
       const std::lock_guard lock(mutex_);
       status_.queue_bytes -= static_cast<std::int64_t>(blocks.front().bytes.size());
+      given_ = std::chrono::steady_clock::now();
     }
     if (must_sync || std::chrono::steady_clock::now() - last_sync_ >= kSyncPeriod) SyncFile();
     if (is_last) CloseFile();
     const std::lock_guard lock(mutex_);
+    given_.reset();
     num_flushes_done_ = num_flushes;
     done_.notify_all();
   }

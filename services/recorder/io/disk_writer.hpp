@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -37,12 +38,13 @@ struct DiskLimits {
 struct DiskStatus {
   std::filesystem::path file = {};  // that is written, or was last
   bool is_recording = false;
-  bool is_waiting_for_file = false;  // one was asked for and is not yet begun
-  bool is_full = false;              // not recording, for lack of room
-  bool wants_new_file = false;       // recording, into a file that somebody moved, cut or wrote to, or that should have ended
-  std::string fault = {};            // why something was lost last, or why it does not record
-  std::int64_t num_events = 0;       // handed to the kernel
-  std::int64_t num_bytes = 0;        // of them, as in the files
+  bool is_waiting_for_file = false;       // one was asked for and is not yet begun
+  bool is_full = false;                   // not recording, for lack of room
+  bool wants_new_file = false;            // recording, into a file that somebody moved, cut or wrote to, or that should have ended
+  std::chrono::milliseconds standing{0};  // for how long the disk has not finished what it was given last; 0 while nothing waits
+  std::string fault = {};                 // why something was lost last, or why it does not record
+  std::int64_t num_events = 0;            // handed to the kernel
+  std::int64_t num_bytes = 0;             // of them, as in the files
   std::int64_t num_files = 0;
   std::int64_t num_faults = 0;           // of the disk
   std::int64_t num_disturbed = 0;        // files that somebody deleted, moved, cut or wrote to while they were recorded
@@ -118,6 +120,7 @@ class DiskWriter {
   std::deque<Block> queue_;
   DiskStatus status_;
   bool is_stopping_ = false;
+  std::optional<std::chrono::steady_clock::time_point> given_;  // when the disk was given what it has not finished
   std::int64_t num_flushes_wanted_ = 0;
   std::int64_t num_flushes_done_ = 0;
 

@@ -128,6 +128,31 @@ TEST(PacketOrder, CountsNoLossInASectorInWhichTheHeadIsDark) {
   EXPECT_EQ(order.counts().num_lost, 0);
 }
 
+TEST(PacketOrder, CountsEveryLossWhereTheHeadHasFired) {
+  for (const int num_lost : {1, 2, 18, 30}) {
+    ColumnSensor sensor;
+    PacketOrder order([](const PlacedColumns&) {});
+    for (int i = 0; i < 36 * 60; ++i) {
+      const bool is_lost = i >= 36 * 10 && i % 36 >= 5 && i % 36 < 5 + num_lost;
+      if (!is_lost) order.Add(kOrderBegin + i * 2778us, sensor.Make(i), sensor.head);
+    }
+    order.Flush();
+    EXPECT_EQ(order.counts().num_lost, 50 * num_lost);
+  }
+}
+
+TEST(PacketOrder, CountsLostTurnsOfAHeadThatIsDarkInASector) {
+  ColumnSensor sensor;
+  PacketOrder order([](const PlacedColumns&) {});
+  for (int i = 0; i < 36 * 40; ++i) {
+    const bool is_lost = i / 36 == 20 || i / 36 == 30 || i / 36 == 31;
+    if (i % 36 < 18 && !is_lost) order.Add(kOrderBegin + i * 2778us, sensor.Make(i), sensor.head);
+  }
+  order.Flush();
+  // Without numbers nobody knows that half of each revolution is never sent.
+  EXPECT_EQ(order.counts().num_lost, 3 * 36);
+}
+
 TEST(PacketOrder, TakesPacketsWithoutAGoodColumnAsSent) {
   ColumnSensor sensor;
   sensor.has_numbers = true;

@@ -411,6 +411,21 @@ TEST(PacketSequencer, CountsNoLossForALimitedFieldOfView) {
   }
 }
 
+TEST(PacketSequencer, FollowsAHeadOfALimitedFieldOfViewThatSpinsUp) {
+  for (const double last_deg : {290.0, 200.0}) {
+    SequencerBench bench;
+    LimitedSensor sensor(20.0, last_deg);
+    // It turns, stands, and takes three seconds to its speed.
+    for (int i = 0; i < 8000; ++i) {
+      sensor.rpm = i < 1500 ? 600.0 : i < 2500 ? 0.0 : std::min(600.0, 0.25 * (i - 2500));
+      bench.Add(sensor.Next());
+    }
+    const auto num_lost = bench.counts().num_lost;
+    for (int i = 0; i < 5000; ++i) bench.Add(sensor.Next());
+    EXPECT_EQ(bench.counts().num_lost, num_lost) << last_deg;
+  }
+}
+
 TEST(PacketSequencer, CountsAJumpBetweenPacketsAsALossUntilItsThirdTime) {
   const double step_deg = 110.592e-6 * 3600.0;
   SequencerBench bench;

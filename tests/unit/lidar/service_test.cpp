@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
+#include "common/core/sentence.hpp"
 #include "lookout/lidar_clock_t.hpp"
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
@@ -233,6 +234,25 @@ TEST(Service, SaysWhenTheLidarIsSilentAndRecovers) {
   EXPECT_EQ(service.Report().state, HealthState::kOk);
 }
 
+TEST(Service, SaysThatTheHeadStandsWhilePacketsCome) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  SpinningSensor sensor;
+  Utime host = kServiceTime;
+  const auto run = [&](double rpm, int num_packets) {
+    sensor.rpm = rpm;
+    for (int i = 0; i < num_packets; ++i) {
+      service.OnDatagram(host += microseconds(1327), 2368, sensor.Next());
+      service.AdvanceTo(host);
+    }
+    return service.Report().reason;
+  };
+  EXPECT_EQ(run(600.0, 1500), "");
+  EXPECT_EQ(run(0.0, 1200), "");
+  EXPECT_EQ(run(0.0, 700), "lidar packets come, but no scan has ended for 2 s: the head stands, or turns too slowly");
+  EXPECT_EQ(run(600.0, 300), "");
+}
+
 TEST(Service, SaysThatTheLidarIsSilentAlsoAfterTheHostsClockWasSetBack) {
   Recorded out;
   Service service(out.bus, Params{});
@@ -363,6 +383,32 @@ TEST(Service, TellsTemperaturesAndAThermalShutdown) {
   send();
   EXPECT_EQ(service.Report().state, HealthState::kDegraded);
   EXPECT_EQ(service.Report().reason, "the lidar has shut down for its temperature: 61 degrees C at the top board, 58 at the bottom board");
+  service.AdvanceTo(kServiceTime + milliseconds(3500));
+  EXPECT_EQ(service.Report().reason,
+            "the lidar has shut down for its temperature: 61 degrees C at the top board, 58 at the bottom board; no lidar packets for 3 s");
+}
+
+TEST(Service, SaysWhenTheSensorsTimeIsOfAnotherSecond) {
+  for (const int off_s : {0, 1, 18}) {
+    Recorded out;
+    Params params;
+    params.decoder.time = TimeChoice::kSensor;
+    Service service(out.bus, params);
+    SpinningSensor sensor;
+    const auto begin = kServiceTime + std::chrono::hours(12) + std::chrono::seconds(off_s);
+    Utime host = begin;
+    for (int i = 0; i < 3000; ++i) {
+      if (i % 100 == 0) {
+        const auto second = sensor.stamp_us() / 1'000'000;
+        auto sentence = "GPRMC,1200" + std::to_string(100 + second % 60).substr(1) + ",A,5400.000,N,01000.000,E,0.0,0.0,041024,,,A";
+        service.OnDatagram(host, 8308, test::MakePositionPacket(sensor.stamp_us(), format::kPpsLocked, WithChecksum(sentence) + "\r\n"));
+      }
+      service.OnDatagram(host += microseconds(1327), 2368, sensor.Next());
+      service.AdvanceTo(host);
+    }
+    const auto reason = service.Report().reason;
+    EXPECT_EQ(reason.starts_with("scans carry the sensor's time as configured, and this computer's clock is "), off_s > 0) << reason;
+  }
 }
 
 TEST(Service, NoticesEachChangeOfTheClockOnce) {

@@ -19,7 +19,8 @@ TEST_F(PageClients, AreToldWhatThereIs) {
   EXPECT_NE(browser.answer().find("Sec-WebSocket-Protocol: lookout.page.v1\r\n"), std::string::npos);
   EXPECT_EQ(browser.hello().kind, 1);
   for (const char* part : {R"("type":"hello")", R"("mode":"live")", R"("version":"1.2")", R"("host":"boat")", R"("may_acknowledge":true)",
-                           R"("channels":["LIDAR_BEAMS","LIDAR_PACKETS",)", R"("sources":[{"id":0,)", R"("server_utime_us":1)"})
+                           R"("channels":["LIDAR_BEAMS","LIDAR_PACKETS",)", R"("processes":["lidar_2","lidar","segmenter",)",
+                           R"("sources":[{"id":0,)", R"("server_utime_us":1)"})
     EXPECT_TRUE(browser.hello().Holds(part)) << part << " in " << browser.hello().bytes;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/config/text_config.hpp"
+#include "services/plotter/core/n2k_device.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::plotter {
@@ -70,11 +71,12 @@ TEST_F(PlotterParams, HoldAnAutopilotsDistancesAndTheSightOfTheBoatsLidars) {
 }
 
 TEST_F(PlotterParams, RefuseWhatCannotBe) {
-  EXPECT_TRUE(Says("", "must have one of udp, tcp_server, tcp_client, serial and websocket, and has 0"));
+  EXPECT_TRUE(Says("", "must have one of udp, tcp_server, tcp_client, serial, websocket and can, and has 0"));
   EXPECT_TRUE(Says("udp { address: 'tablet' port: 2000 }", "'tablet' is no numeric address"));
   EXPECT_TRUE(Says("udp { address: '0.0.0.0' port: 2000 }", "must be of a receiver"));
   EXPECT_TRUE(Says("udp { address: '127.0.0.1' port: 2000 } mavlink { system_id: 2 }", "mavlink is of format MAVLINK only"));
   EXPECT_TRUE(Says("websocket { address: '127.0.0.1' }", "a websocket carries format SIGNALK only"));
+  EXPECT_TRUE(Says("udp { address: '127.0.0.1' port: 2000 } targets_as_vessels: true", "targets_as_vessels is of format SIGNALK only"));
   EXPECT_TRUE(Says("serial { device: 'ttyUSB0' baud: 4800 }", "the whole path"));
   EXPECT_TRUE(Says("serial { device: '/dev/ttyUSB0' baud: 4801 }", "none that serial ports have"));
   EXPECT_TRUE(Says("udp { address: '10.0.0.1' port: 2000 } target_talker: 'RAD'", "two capital letters"));
@@ -93,6 +95,27 @@ TEST_F(PlotterParams, RefuseWhatAnAutopilotCannotGet) {
   EXPECT_NE(fault("udp { address: '10.0.0.1' port: 14550 } alerts: ALR").find("of format NMEA0183 only"), std::string::npos);
   EXPECT_NE(fault("serial { device: '/dev/ttyACM0' baud: 115200 } takes_acknowledgements: true").find("bring no acknowledgements back"),
             std::string::npos);
+}
+
+TEST_F(PlotterParams, MakeADeviceOfNmea2000) {
+  const auto params = Load(
+      "output { name: 'a' format: N2K_DEVICE tcp_client { address: '192.168.4.1' port: 1457 } }\n"
+      "output { name: 'b' format: N2K_DEVICE can { interface: 'can0' } n2k { preferred_address: 80 unique_number: 7 } }\n"
+      "output { name: 'c' format: N2K_DEVICE serial { device: '/dev/ttyACM0' baud: 115200 } }\n");
+  const auto number = UniqueNumberOf("demo/a");
+  EXPECT_EQ(InWords(params),
+            "# plotter.txtpb: output 'a': NMEA 2000 as a device of unique number " + std::to_string(number) +
+                " that claims address 35 first, RAW text, TCP to 192.168.4.1 port 1457\n"
+                "# plotter.txtpb: output 'b': NMEA 2000 as a device of unique number 7 that claims address 80 first, CAN interface can0\n"
+                "# plotter.txtpb: output 'c': NMEA 2000 as a device of unique number " +
+                std::to_string(UniqueNumberOf("demo/c")) + " that claims address 35 first, RAW text, serial port /dev/ttyACM0 at 115200 baud\n");
+  const auto fault = [this](const std::string& output) { return FaultOf(output, "N2K_DEVICE"); };
+  EXPECT_NE(fault("udp { address: '10.0.0.1' port: 1457 }").find("goes over tcp_client or serial, to a gateway, or over can"), std::string::npos);
+  EXPECT_NE(fault("can { interface: '' }").find("can.interface"), std::string::npos);
+  EXPECT_NE(fault("can { interface: 'can0' } n2k { preferred_address: 252 }").find("preferred_address"), std::string::npos);
+  EXPECT_NE(fault("can { interface: 'can0' } n2k { unique_number: 2097152 }").find("unique_number"), std::string::npos);
+  EXPECT_NE(fault("can { interface: 'can0' } takes_acknowledgements: true").find("bring no acknowledgements back"), std::string::npos);
+  EXPECT_TRUE(Says("can { interface: 'can0' }", "can and n2k are of format N2K_DEVICE only"));
 }
 
 // A position of ours that comes back as one that was measured would hide that none is.

@@ -80,6 +80,42 @@ TEST_F(PlotterAlerts, RaisesWhatGrewGraverUnderAnotherPath) {
   EXPECT_TRUE(acknowledged_.empty());
 }
 
+// Nobody has acknowledged a warning for five minutes: it is raised anew, once, under another path. A server that was told to silence it keeps that
+// path silent for ever.
+TEST_F(PlotterAlerts, RaisesAWarningAnewThatNobodyAcknowledges) {
+  alerts_ = {MakeAlert(3)};
+  alerts_[0].raised_utime_us = alerts_[0].changed_utime_us = host_us_;
+  sounding_alert_id_ = 3;
+  signal_k_->room = 1'000'000'000;
+  Run(290'000'000);
+  const auto first = signal_k_->With("closestApproach3").at(0);
+  EXPECT_TRUE(signal_k_->With("escalated").empty());
+  Clear();
+  Run(15'000'000);
+  const auto again = signal_k_->With("escalated1");
+  ASSERT_FALSE(again.empty());
+  EXPECT_NE(again[0].find(R"("state":"alarm","method":["visual","sound"])"), std::string::npos) << again[0];
+  const auto ended = signal_k_->With("\"normal\"");
+  ASSERT_FALSE(ended.empty());
+  EXPECT_EQ(ended[0].find("escalated"), std::string::npos);
+  signal_k_->received = {AcknowledgedDelta(again[0])};
+  Wait(100'000);
+  EXPECT_EQ(acknowledged_.size(), 1U);
+}
+
+// A caution that was a warning is the same alert, told once.
+TEST_F(PlotterAlerts, TellsOnceThatAnAlertGrewLess) {
+  alerts_ = {MakeAlert(3)};
+  Run(300'000);
+  Clear();
+  alerts_[0].level = alert_t::LEVEL_CAUTION;
+  alerts_[0].changed_utime_us += 1'000'000;
+  Run(300'000);
+  const auto sent = signal_k_->With("closestApproach3");
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_NE(sent[0].find(R"("state":"warn")"), std::string::npos) << sent[0];
+}
+
 // What comes back from "over, not acknowledged" is told anew: an acknowledgement of what was over is none of it.
 TEST_F(PlotterAlerts, RaisesWhatComesBackUnderAnotherPath) {
   alerts_ = {MakeAlert(3)};

@@ -16,7 +16,7 @@ TEST_F(PlotterService, SendsTheOwnShipAndTargets) {
   EXPECT_GE(nmea_->With("IIRMC").size(), 5U);
   EXPECT_EQ(nmea_->With("RATTM,00,").size(), 2U);  // at once and after 2.5 s
   EXPECT_GE(nmea_->With("RAOSD").size(), 5U);
-  EXPECT_EQ(signal_k_->With("targets.lidar:gannet-17").size(), 5U);
+  EXPECT_EQ(signal_k_->With("targets.lidar:gannet-1").size(), 5U);
   EXPECT_EQ(n2k_->With(" 1F608 ").size(), 2U);
   EXPECT_EQ(n2k_->With(" 1F801 ").size(), n2k_->With(" 1F802 ").size());
   EXPECT_EQ(service_->Report().state, HealthState::kOk) << service_->Report().reason;
@@ -58,8 +58,8 @@ TEST_F(PlotterService, TellsALostTargetOnce) {
   EXPECT_EQ(nmea_->With(",L,").size(), 1U);
   EXPECT_EQ(nmea_->With("RATTM,00,").size(), 1U);
   EXPECT_EQ(nmea_->With("RATTM,01,").size(), 3U);
-  ASSERT_EQ(signal_k_->With("gannet-17").size(), 1U);
-  EXPECT_NE(signal_k_->With("gannet-17")[0].find(R"("navigation.position","value":null)"), std::string::npos);
+  ASSERT_EQ(signal_k_->With("gannet-1").size(), 1U);
+  EXPECT_NE(signal_k_->With("gannet-1")[0].find(R"("navigation.position","value":null)"), std::string::npos);
 }
 
 TEST_F(PlotterService, SendsTentativeTracksOnlyWhereAsked) {
@@ -70,71 +70,6 @@ TEST_F(PlotterService, SendsTentativeTracksOnlyWhereAsked) {
   Start();
   Run(1'000'000);
   EXPECT_EQ(nmea_->With(",Q,").size(), 1U);
-}
-
-ais_t AisOf(std::int64_t track_id, const std::string& name, std::int64_t end_us, std::int64_t begin_us) {
-  ais_t message{};
-  message.utime_us = message.end_utime_us = end_us;
-  message.tracks_begin_utime_us = begin_us;
-  message.num_ships = 1;
-  auto& ship = message.ships.emplace_back();
-  ship = {};
-  ship.mmsi = 211000001;
-  ship.name = name;
-  ship.state = ais_ship_t::STATE_TRACKED;
-  ship.track_id = track_id;
-  ship.arrival_utime_us = end_us;
-  return message;
-}
-
-TEST_F(PlotterService, CallsATargetAsItsShipUnlessPeopleGaveAName) {
-  tracks_ = {MakeTrack(17)};
-  Run(1'000'000);
-  support::Send(*bus_, bus::kAis, AisOf(17, "EVEREST", host_us_, begin_us_));
-  Run(1'200'000);
-  EXPECT_NE(signal_k_->With("gannet-17").back().find("EVEREST"), std::string::npos);
-  support::Send(*bus_, bus::kAis, AisOf(17, "", host_us_, begin_us_));
-  Run(1'200'000);
-  EXPECT_NE(signal_k_->With("gannet-17").back().find("MMSI 211000001"), std::string::npos);
-  names_ = {{17, "Kiosk pier"}};
-  Run(1'200'000);
-  EXPECT_NE(signal_k_->With("gannet-17").back().find("Kiosk pier"), std::string::npos);
-  // Of another process of the tracker the number means another thing.
-  names_.clear();
-  support::Send(*bus_, bus::kAis, AisOf(17, "EVEREST", host_us_, begin_us_ + 1));
-  Run(1'200'000);
-  EXPECT_EQ(signal_k_->With("gannet-17").back().find("EVEREST"), std::string::npos);
-}
-
-TEST_F(PlotterService, LeavesShipsOutForAPlotterThatHasAis) {
-  params_.sends_ais_targets = false;
-  Start();
-  tracks_ = {MakeTrack(17), MakeTrack(18)};
-  support::Send(*bus_, bus::kAis, AisOf(17, "EVEREST", host_us_ + 200'000, begin_us_));
-  Run(1'000'000);
-  EXPECT_TRUE(signal_k_->With("gannet-17").empty());
-  EXPECT_FALSE(signal_k_->With("gannet-18").empty());
-  // What AIS may have dropped is there, and what comes near, with an alert or before it.
-  const auto is_sent = [this](auto&& change) {
-    signal_k_->sent.clear();
-    auto ais = AisOf(17, "EVEREST", host_us_ + 200'000, begin_us_);
-    tracks_ = {MakeTrack(17), MakeTrack(18)};
-    change(ais.ships[0], tracks_[0]);
-    support::Send(*bus_, bus::kAis, ais);
-    Run(1'000'000);
-    return signal_k_->sent.end() != std::ranges::find_if(signal_k_->sent, [](const auto& text) {
-             return text.find("gannet-17") != std::string::npos && text.find("\"latitude\"") != std::string::npos;
-           });
-  };
-  EXPECT_TRUE(is_sent([](auto& ship, auto&) { ship.arrival_utime_us -= 300'000'000; }));
-  EXPECT_FALSE(is_sent([](auto&, auto&) {}));
-  EXPECT_TRUE(is_sent([](auto&, auto& track) { track.cpa_probability = 0.9F; }));
-  EXPECT_FALSE(is_sent([](auto&, auto&) {}));
-  // What an alert tells of is there.
-  alerts_ = {MakeAlert(3)};
-  alerts_[0].track_id = 17;
-  Run(500'000);
-  EXPECT_FALSE(signal_k_->With("gannet-17").empty());
 }
 
 TEST_F(PlotterService, StopsWhenNobodyLooks) {
@@ -153,7 +88,7 @@ TEST_F(PlotterService, StopsWhenNobodyLooks) {
   const auto words = signal_k_->With("no look-out");
   ASSERT_EQ(words.size(), 1U);
   EXPECT_NE(words[0].find("\"alarm\""), std::string::npos);
-  EXPECT_NE(signal_k_->With("gannet-17").back().find(R"("navigation.position","value":null)"), std::string::npos);
+  EXPECT_NE(signal_k_->With("gannet-1").back().find(R"("navigation.position","value":null)"), std::string::npos);
   EXPECT_GE(nmea_->With("RMC").size(), 4U);
   EXPECT_NE(service_->Report().reason.find("no ALERTS for 5 s"), std::string::npos) << service_->Report().reason;
   EXPECT_EQ(Count("times_unwatched"), 1);
@@ -337,8 +272,8 @@ TEST_F(PlotterService, EndsTargetsOfAServerThatWasAwayWhenTheLookOutFailed) {
   signal_k_->is_there = true;
   ++signal_k_->openings;
   Wait(500'000);
-  ASSERT_EQ(signal_k_->With("gannet-17").size(), 1U);
-  EXPECT_NE(signal_k_->With("gannet-17")[0].find(R"("navigation.position","value":null)"), std::string::npos);
+  ASSERT_EQ(signal_k_->With("gannet-1").size(), 1U);
+  EXPECT_NE(signal_k_->With("gannet-1")[0].find(R"("navigation.position","value":null)"), std::string::npos);
 }
 
 TEST_F(PlotterService, TellsNoTargetThatEndedWhileNobodyListened) {
@@ -394,7 +329,7 @@ TEST_F(PlotterService, EndsTargetsWhenItEndsInOrder) {
   service_->Finish();
   EXPECT_EQ(nmea_->With("RATTM,00,").size(), 1U);
   EXPECT_EQ(nmea_->With(",L,").size(), 1U);
-  EXPECT_EQ(signal_k_->With("gannet-17").size(), 1U);
+  EXPECT_EQ(signal_k_->With("gannet-1").size(), 1U);
 }
 
 TEST_F(PlotterService, RefusesWhatCannotBe) {
@@ -428,33 +363,6 @@ TEST_F(PlotterService, RefusesWhatCannotBe) {
   alerts_ = {MakeAlert(INT64_MIN)};
   SendAlerts();
   EXPECT_EQ(Count("alerts_refused_id"), 2);
-}
-
-TEST_F(PlotterService, CallsTargetsAsPeopleDo) {
-  tracks_ = {MakeTrack(17)};
-  names_ = {{17, "Kiosk pier"}};
-  Run(300'000);
-  Clear();
-  Run(3'000'000);
-  EXPECT_FALSE(nmea_->With(",Kiosk pier,T,").empty());
-  EXPECT_FALSE(signal_k_->With("Kiosk pier").empty());
-  // Another process of the tracker: its track 17 is of another thing.
-  names_.clear();
-  begin_us_ += 1'000'000;
-  Clear();
-  Run(3'000'000);
-  EXPECT_TRUE(nmea_->With(",Kiosk pier,T,").empty());
-}
-
-TEST_F(PlotterService, TellsAlertsAlsoWhereANameIsNone) {
-  tracks_ = {MakeTrack(17)};
-  names_ = {{17, "\x1b[31m"}};
-  alerts_ = {MakeAlert(3)};
-  Run(300'000);
-  EXPECT_GT(Count("names_refused"), 0);
-  EXPECT_FALSE(nmea_->With("ALR").empty());
-  EXPECT_FALSE(nmea_->With(",boat 17,T,").empty());
-  EXPECT_TRUE(nmea_->With("\x1b").empty());
 }
 
 TEST_F(PlotterService, WaitsForAllPartsOfTracks) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <string>
 
 #include "tests/unit/plotter/made_up.hpp"
 
@@ -43,8 +46,8 @@ TEST(PlotterSignalK, SaysNullOfWhatIsNotKnown) {
 
 TEST(PlotterSignalK, SaysATarget) {
   const auto target = MakeTarget();
-  const auto text = TargetDelta("gannet", target, test::kTime);
-  EXPECT_EQ(json::parse(text)["context"], "targets.lidar:gannet-17");
+  const auto text = TargetDelta(TargetContext("gannet", 3), target, test::kTime);
+  EXPECT_EQ(json::parse(text)["context"], "targets.lidar:gannet-3");
   const auto values = Values(text);
   EXPECT_NEAR(values["navigation.position"]["latitude"].get<double>(), target.position.latitude_deg, 1e-9);
   EXPECT_NEAR(values["navigation.position"]["longitude"].get<double>(), target.position.longitude_deg, 1e-9);
@@ -60,14 +63,33 @@ TEST(PlotterSignalK, SaysATarget) {
 TEST(PlotterSignalK, CallsATargetAsPeopleDo) {
   auto target = MakeTarget();
   target.given_name = "Kj\xc3\xb8kken";
-  EXPECT_EQ(Values(TargetDelta("gannet", target, test::kTime))[""]["name"], "Kj\xc3\xb8kken");
+  EXPECT_EQ(Values(TargetDelta(TargetContext("gannet", 3), target, test::kTime))[""]["name"], "Kj\xc3\xb8kken");
 }
 
 TEST(PlotterSignalK, EndsATargetByNulls) {
-  const auto text = TargetEndDelta("gannet", 17, test::kTime);
-  EXPECT_EQ(json::parse(text)["context"], "targets.lidar:gannet-17");
+  const auto text = TargetEndDelta(TargetContext("gannet", 3), test::kTime);
+  EXPECT_EQ(json::parse(text)["context"], "targets.lidar:gannet-3");
   for (const auto& value : Values(text)) EXPECT_TRUE(value.is_null());
   EXPECT_TRUE(Values(text).contains("navigation.position"));
+}
+
+TEST(PlotterSignalK, SaysByItsNameThatATargetIsLost) {
+  const auto values = Values(TargetEndDelta(VesselContext("gannet", 3), test::kTime, "lost: boat 17"));
+  EXPECT_EQ(values[""]["name"], "lost: boat 17");
+  EXPECT_TRUE(values["navigation.position"].is_null());
+}
+
+// The form that the specification's schema wants of a vessel without an MMSI.
+TEST(PlotterSignalK, GivesAVesselAUuidOfItsPlace) {
+  const std::regex form("vessels\\.urn:mrn:signalk:uuid:[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}");
+  std::set<std::string> contexts;
+  for (int place = 1; place <= 500; ++place) {
+    contexts.insert(VesselContext("gannet", place));
+    EXPECT_TRUE(std::regex_match(VesselContext("gannet", place), form)) << VesselContext("gannet", place);
+  }
+  EXPECT_EQ(contexts.size(), 500U);
+  EXPECT_NE(VesselContext("gannet", 1), VesselContext("tern", 1));
+  EXPECT_EQ(VesselContext("gannet", 1), VesselContext("gannet", 1));
 }
 
 TEST(PlotterSignalK, MakesAWordOfAnyName) {
@@ -87,12 +109,15 @@ TEST(PlotterSignalK, SaysAnAlert) {
     return value["state"].get<std::string>() + value["method"].dump();
   };
   EXPECT_EQ(state(), R"(alarm["visual"])") << "another one sounds";
+  EXPECT_FALSE(Values(NoticeDelta(notice, "word", test::kTime))["notifications.lookout.word"].contains("acknowledgeStatus"));
+  EXPECT_EQ(Values(NoticeDelta(notice, "word", test::kTime))["notifications.lookout.word"]["createdAt"], "2026-07-01T10:20:30.456Z");
   notice.sound = Sound::kSounds;
   EXPECT_EQ(state(), R"(alarm["visual","sound"])");
   notice.level = Level::kCaution;
   EXPECT_EQ(state(), R"(warn["visual","sound"])");
   notice.state = NoticeState::kAcknowledged;
   EXPECT_EQ(state(), R"(warn["visual"])");
+  EXPECT_EQ(Values(NoticeDelta(notice, "word", test::kTime))["notifications.lookout.word"]["acknowledgeStatus"], "Yes");
   notice.state = NoticeState::kRectified;
   EXPECT_EQ(state(), R"(alert["visual"])");
   notice.state = NoticeState::kCleared;

@@ -325,8 +325,13 @@ TEST_F(Rotation, ADiskThatStandsStillHoldsUpNobodyAndLosesNothingThatTheQueueHol
   Send(1000);
   EXPECT_GT(support::CountOf(service, "queue_bytes"), 1'000'000);
   EXPECT_EQ(service.Report().state, HealthState::kOk) << service.Report().reason;
+  // Two seconds, the time after which it says so.
+  while (service.Report().state == HealthState::kOk) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(service.Report().state, HealthState::kFailed);
+  EXPECT_TRUE(service.Report().reason.starts_with("not recording: the disk has stood still for 2 s; ")) << service.Report().reason;
   standing.Stand(false);
   service.Flush();
+  EXPECT_EQ(service.Report().state, HealthState::kOk) << service.Report().reason;
   EXPECT_EQ(support::CountOf(service, "lost"), 0);
   EXPECT_EQ(support::CountOf(service, "queue_bytes"), 0);
   EXPECT_GT(support::CountOf(service, "queue_peak_bytes"), 1'000'000);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <initializer_list>
 #include <limits>
 #include <random>
 
@@ -252,12 +253,62 @@ TEST(Board, KeepsTheProcessesOfTheSuiteAboveInventedNames) {
 TEST(Board, SaysThatNobodyLooksWhereATrackerIsAndNoAlertsCome) {
   Board board(kStart);
   Say(board, bus::kHealth, HealthOf("georeferencer", 1), 0.5);
-  EXPECT_TRUE(board.AlertLines(At(1.0)).empty()) << "a boat without a tracker";
+  EXPECT_TRUE(board.AlertLines(At(1.0)).empty()) << "a tracker may start yet";
   Say(board, bus::kHealth, HealthOf("tracker", 1, health_t::STATE_DEGRADED, "no look-out: no whole scan yet"), 1.0);
   EXPECT_EQ(board.AlertLines(At(1.1)), std::vector<std::string>{"NO LOOK-OUT: no ALERTS yet"});
   Say(board, bus::kAlerts, alerts_t{}, 2.0);
   EXPECT_TRUE(board.AlertLines(At(2.9)).empty());
   EXPECT_EQ(board.AlertLines(At(4.0)), std::vector<std::string>{"NO LOOK-OUT: no ALERTS for 2 s"});
+}
+
+// A boat whose tracker did not start showed no alarm at all.
+TEST(Board, SaysThatNobodyLooksWhereTheSuiteIsHeardWithoutATracker) {
+  Board board(kStart);
+  Say(board, bus::kHealth, HealthOf("somebody", 1), 0.1);
+  Say(board, bus::kHealth, HealthOf("lidar_2", 1), 1.0);
+  EXPECT_TRUE(board.AlertLines(At(3.9)).empty());
+  EXPECT_EQ(board.AlertLines(At(4.0)), std::vector<std::string>{"NO LOOK-OUT: no ALERTS yet"});
+}
+
+// The key `c` forgot that there was a look-out, and processes that had died.
+TEST(Board, CountsAnewAndForgetsNothingElse) {
+  Board board(kStart);
+  Say(board, bus::kHealth, HealthOf("recorder", 1), 0.1);
+  Say(board, bus::kHealth, HealthOf("recorder", 4), 0.2);
+  Say(board, bus::kAlerts, alerts_t{}, 0.3);
+  board.Take("ALERTS", {}, At(0.4));
+  for (std::size_t i = 0; i <= Board::kMaxChannels; ++i) board.Take("JUNK" + std::to_string(i), {}, At(0.4));
+  ASSERT_EQ(board.Channels(At(0.5))[0].num_bad, 1);
+  ASSERT_EQ(board.Channels(At(0.5))[1].num_lost, 2);
+  ASSERT_GT(board.num_unlisted(), 0);
+  board.CountAnew();
+  for (const auto& channel : board.Channels(At(10.0))) EXPECT_EQ(channel.num_lost.value_or(0) + channel.num_bad, 0) << channel.name;
+  EXPECT_EQ(board.num_unlisted(), 0);
+  EXPECT_EQ(board.AlertLines(At(10.3)), std::vector<std::string>{"NO LOOK-OUT: no ALERTS for 10 s"});
+  ASSERT_EQ(board.Processes(At(10.0)).size(), 1U);
+  EXPECT_TRUE(board.Processes(At(10.0))[0].is_silent);
+  Say(board, bus::kHealth, HealthOf("recorder", 6), 10.1);
+  EXPECT_EQ(board.Channels(At(10.2))[1].num_lost, 1) << "the gap behind what was heard before";
+}
+
+TEST(Board, KeepsWarningsThatAreOverUntilSomebodyAcknowledgesThem) {
+  Board board(kStart);
+  alerts_t alerts{};
+  for (const auto state :
+       std::initializer_list<std::int32_t>{alert_t::STATE_RECTIFIED, alert_t::STATE_ACKNOWLEDGED, alert_t::STATE_CLEARED, alert_t::STATE_ACTIVE}) {
+    alert_t alert{};
+    alert.id = state;
+    alert.level = alert_t::LEVEL_WARNING;
+    if (state == alert_t::STATE_ACTIVE) alert.level = alert_t::LEVEL_CAUTION;
+    alert.state = state;
+    alert.text = "boat " + std::to_string(state);
+    alerts.alerts.push_back(alert);
+  }
+  alerts.num_alerts = 4;
+  Say(board, bus::kAlerts, alerts, 1.0);
+  EXPECT_EQ(board.AlertLines(At(1.1)), (std::vector<std::string>{"CAUTION: boat 1", "WARNING OVER: boat 3"}));
+  EXPECT_EQ(board.AlertLines(At(4.0)),
+            (std::vector<std::string>{"NO LOOK-OUT: no ALERTS for 3 s", "before that: boat 1", "before that, over: boat 3"}));
 }
 
 TEST(Board, MarksTheAlertThatSoundsAndThoseThatAreSilenced) {

@@ -254,8 +254,9 @@ TEST(Screen, TellsTheOwnShip) {
   EXPECT_EQ(wide[1], "own 43.629590 -72.149989  heading 090 hdt  1.2 m/s  pose ok  fix rtk_fixed  course 090  14 satellites");
   EXPECT_EQ(Lines(DrawScreen(BusyBoard(), "title", At(2.0), {40, 40}))[1], "own 43.629590 -72.149989  heading 090");
   const auto rows = DrawScreen(BusyBoard(), "title", At(9.0), {80, 40});
-  EXPECT_EQ(Lines(rows)[1].substr(0, 40), "own (no POSE for 7 s) 43.629590 -72.1499");
-  EXPECT_EQ(rows[1][0].style, Style::kFault);
+  EXPECT_EQ(Lines(rows)[0], "NO LOOK-OUT: no ALERTS yet");  // no tracker, and the others were heard 3 s ago
+  EXPECT_EQ(Lines(rows)[2].substr(0, 40), "own (no POSE for 7 s) 43.629590 -72.1499");
+  EXPECT_EQ(rows[2][0].style, Style::kFault);
   Board board(kStart);
   EXPECT_TRUE(Has(Lines(DrawScreen(board, "title", At(1.0), {80, 0})), "own ship: no POSE"));
   auto lost = PoseAt(1'000'000, std::numeric_limits<double>::quiet_NaN());

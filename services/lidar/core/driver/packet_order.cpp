@@ -264,10 +264,10 @@ void PacketOrder::Give(Utime host_time, const Packet& packet, const Head& head, 
     if (last_) ++counts_.num_restarts;
     known_ = {};
     dark_.clear();
+    fired_.reset();
     empty_ahead_.clear();
     rate_radps_ = 0.0;
   } else {
-    ForgetSectorsIn(packet);
     const int num_empty = mark.number && place.num_lost > 0 ? NumEmptyBefore(*mark.number) : 0;
     placed.num_lost = LostOfGap(mark, std::max(0, place.num_lost - num_empty));
     if (place.kind == Kind::kNext && place.num_lost == 0 && mark.has_columns && last_->mark.has_columns) {
@@ -277,6 +277,7 @@ void PacketOrder::Give(Utime host_time, const Packet& packet, const Head& head, 
       if (rate_radps < kFastestRadps) rate_radps_ += (rate_radps - rate_radps_) * (rate_radps_ > 0.0 ? kShare : 1.0);
     }
   }
+  NoteFired(packet);
   known_.at(next_known_) = {mark.stamp, mark.first_azimuth_rad};
   next_known_ = (next_known_ + 1) % known_.size();
   last_ = Last{mark, host_time, place.time};
@@ -284,14 +285,20 @@ void PacketOrder::Give(Utime host_time, const Packet& packet, const Head& head, 
   SkipEmpty();
 }
 
-// Of the packets that seem to miss before this one, those that were not sent for a limited field of view are no loss.
+// Of the packets that seem to miss before this one, those that were not sent for a limited field of view are no loss: what is missing where the head
+// has fired before is one.
 int PacketOrder::LostOfGap(const Mark& mark, int num_missing) {
   if (num_missing == 0) return 0;
-  if (mark.number || !mark.has_columns || !last_->mark.has_columns || rate_radps_ <= 0.0) {
+  const bool may_be_dark = !mark.number && mark.has_columns && last_->mark.has_columns && rate_radps_ > 0.0;
+  const double from_rad = may_be_dark ? EndAzimuth() : 0.0;
+  if (!may_be_dark || HasFiredInside(from_rad, mark.first_azimuth_rad)) {
     counts_.num_lost += num_missing;
     return num_missing;
   }
-  const double from_rad = EndAzimuth();
+  // Beyond the sector whole turns may be missing.
+  const double packet_rad = rate_radps_ * ToSeconds(last_->mark.duration);
+  const auto num_dark = static_cast<int>(std::lround(TurnRad(from_rad, mark.first_azimuth_rad) / packet_rad));
+  const int num_beyond = (num_missing - num_dark) * packet_rad > kPi ? num_missing - num_dark : 0;
   const auto is_here = [&](const DarkSector& sector) {
     return ApartRad(sector.from_rad, from_rad) < kSameSectorRad && ApartRad(sector.to_rad, mark.first_azimuth_rad) < kSameSectorRad;
   };
@@ -301,23 +308,29 @@ int PacketOrder::LostOfGap(const Mark& mark, int num_missing) {
     sector = dark_.insert(dark_.end(), DarkSector{from_rad, mark.first_azimuth_rad});
   }
   if (++sector->num_seen < kSectorSeen) {
-    sector->num_counted += num_missing;
+    sector->num_counted += num_missing - num_beyond;
     counts_.num_lost += num_missing;
     return num_missing;
   }
-  counts_.num_lost -= std::exchange(sector->num_counted, 0);
-  return 0;
+  counts_.num_lost += num_beyond - std::exchange(sector->num_counted, 0);
+  return num_beyond;
 }
 
-// A sector in which the head fires is none.
-void PacketOrder::ForgetSectorsIn(const Packet& packet) {
-  std::erase_if(dark_, [&](const DarkSector& sector) {
-    const double width_rad = TurnRad(sector.from_rad, sector.to_rad);
-    return std::ranges::any_of(packet.columns, [&](const Column& column) {
-      const double into_rad = TurnRad(sector.from_rad, column.azimuth_rad);
-      return into_rad > kSameSectorRad && into_rad < width_rad - kSameSectorRad;
-    });
-  });
+// Whether the head ever fired between these azimuths; what is too narrow to tell counts as if.
+bool PacketOrder::HasFiredInside(double from_rad, double to_rad) const {
+  const double width_rad = TurnRad(from_rad, to_rad);
+  // Edges are known to a column or two.
+  const double margin_rad = std::min(kSameSectorRad, width_rad / 4.0);
+  const auto first = static_cast<std::int64_t>(std::ceil((from_rad + margin_rad) / kBinRad));
+  const auto end = static_cast<std::int64_t>(std::floor((from_rad + width_rad - margin_rad) / kBinRad));
+  for (auto bin = first; bin < end; ++bin) {
+    if (fired_.test(static_cast<std::size_t>(bin) % fired_.size())) return true;
+  }
+  return first >= end;
+}
+
+void PacketOrder::NoteFired(const Packet& packet) {
+  for (const auto& column : packet.columns) fired_.set(static_cast<std::size_t>(WrapTo2Pi(column.azimuth_rad) / kBinRad) % fired_.size());
 }
 
 }  // namespace lookout::lidar

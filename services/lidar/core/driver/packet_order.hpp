@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
 #include "services/lidar/core/driver/clock_reading.hpp"
 #include "services/lidar/core/driver/sequence.hpp"
@@ -81,7 +83,7 @@ class PacketOrder {
     std::chrono::nanoseconds stamp{-1};
     double first_azimuth_rad = -1.0;
   };
-  // Where a head of a limited field of view fires nothing: known by gaps at the same place in three revolutions.
+  // Where a head of a limited field of view fires nothing: known by three gaps at the same place, where no shot of the run ever was.
   struct DarkSector {
     double from_rad = 0.0;
     double to_rad = 0.0;
@@ -104,7 +106,8 @@ class PacketOrder {
   void ReleaseWhatIsNext();
   void Give(Utime host_time, const Packet& packet, const Head& head, const Place& place);
   int LostOfGap(const Mark& mark, int num_missing);
-  void ForgetSectorsIn(const Packet& packet);
+  bool HasFiredInside(double from_rad, double to_rad) const;
+  void NoteFired(const Packet& packet);
 
   Handler on_packet_;
   std::optional<Last> last_;
@@ -114,6 +117,8 @@ class PacketOrder {
   std::size_t next_known_ = 0;
   std::size_t num_late_in_a_row_ = 0;
   std::vector<DarkSector> dark_;
+  static constexpr double kBinRad = kTwoPi / 3600.0;
+  std::bitset<3600> fired_;                 // by azimuth, since the last restart
   std::vector<std::uint64_t> empty_ahead_;  // numbers of packets without a good column that came ahead of their turn; by arrival
   SequenceCounts counts_;
 };

@@ -220,7 +220,8 @@ void PacketSequencer::Give(Utime host_time, const DataPacket& packet, Model mode
   placed.is_restart = place.kind == Kind::kRestart;
   placed.is_elsewhere = place.kind == Kind::kNext && place.is_disagreeing;
   if (placed.is_restart) rate_cdeg_ = 0.0;
-  const bool is_next = place.kind == Kind::kNext && !last_->steps.jump && (rate_cdeg_ == 0.0 || IsContinuing(packet));
+  // A head that stands or starts to turn goes on nowhere, and its rate must be measured to see that it turns.
+  const bool is_next = place.kind == Kind::kNext && !last_->steps.jump && (SweepCdeg() == 0.0 || IsContinuing(packet));
   if (is_next) MeasureRate(packet, placed);
   placed.steps = MeasureSteps(packet, rate_cdeg_);
   if (rate_cdeg_ == 0.0) rate_cdeg_ = MeanGapCdeg(packet, placed.steps);

@@ -41,6 +41,8 @@ export interface Hello {
   host: string;
   server_utime_us: number;
   channels: string[];
+  /** Names in HEALTH of the processes of a boat. */
+  processes: string[];
   sources: Source[];
   may_acknowledge: boolean;
 }

@@ -12,6 +12,8 @@ import { CompareView } from "./views/compare.js";
 import { Lists } from "./views/lists.js";
 import { MapView } from "./views/map.js";
 import { Plots } from "./views/plots.js";
+import { ProcessLine } from "./views/process_line.js";
+import { ProcessWatch } from "./views/process_watch.js";
 import { RangeImageView } from "./views/range_image.js";
 import { Sounder, WakeLock } from "./views/sound.js";
 import { Timeline } from "./views/timeline.js";
@@ -66,15 +68,22 @@ const sounder = new Sounder(state);
 new WakeLock(state);
 const settings = new SettingsSheet(state, sounder);
 const alerts = new AlertBar(state, sounder, film);
+const processes = new ProcessWatch(state);
+const lists = new Lists(state, processes);
 const views = new Map<ViewName, View>();
 views.set("around", new AroundView(state));
 views.set("map", new MapView(state));
 views.set("range_image", new RangeImageView(state));
 views.set("cloud", new CloudView(state));
-views.set("lists", new Lists(state));
+views.set("lists", lists);
 views.set("plots", new Plots(state));
 views.set("compare", new CompareView(state, film));
-const layout = new Layout(state, views, [new Banner(state, sounder, settings).element, alerts.element], [new Timeline(state, film).element, settings.element]);
+const unwell = new ProcessLine(state, processes, () => {
+  layout.show("lists");
+  lists.show("health");
+});
+const top = [new Banner(state, sounder, settings).element, alerts.element, unwell.element];
+const layout = new Layout(state, views, top, [new Timeline(state, film).element, settings.element]);
 listenToKeys(state, settings, {
   showView: (index) => {
     const name = [...views.keys()][index];

@@ -29,12 +29,27 @@ test("a channel is what its publisher and its readers tell together", () => {
   assert.equal(pose!.rate_hz, 50);
 });
 
+const kOfBoat = new Set(["lidar", "tracker", "recorder", "georeferencer"]);
+
 test("a process that went silent stays on the roll, with its age", () => {
   const roll = new Roll();
   roll.take([health("lidar", [], 1), health("tracker", [], 1)], 0);
   roll.take([health("lidar", [], 1), health("tracker", [], 2)], 8000);
-  assert.deepEqual(roll.list(9000).map(({ health: { process }, age_s }) => [process, age_s]), [["lidar", 9], ["tracker", 1]]);
-  assert.deepEqual(roll.list(700_000), []);
+  assert.deepEqual(roll.list(9000, kOfBoat).map(({ health: { process }, age_s }) => [process, age_s]), [["lidar", 9], ["tracker", 1]]);
+});
+
+// A recorder that died in the morning was well again after ten minutes: it was not in the list any more.
+test("a process of the boat is never forgotten, one of somebody else after ten minutes", () => {
+  const roll = new Roll();
+  roll.take([health("recorder", [], 1), health("somebody", [], 1)], 0);
+  assert.deepEqual(roll.list(599_000, kOfBoat).map(({ health: { process } }) => process), ["recorder", "somebody"]);
+  assert.deepEqual(roll.list(36_000_000, kOfBoat).map(({ health: { process }, age_s }) => [process, age_s]), [["recorder", 36_000]]);
+});
+
+test("invented computers do not fill the roll: of a name the one that was heard last is kept", () => {
+  const roll = new Roll();
+  for (let i = 0; i < 100; ++i) roll.take([{ ...health("recorder", [], i), host: `computer${i}` } as unknown as Health], i);
+  assert.deepEqual(roll.list(700_000, kOfBoat).map(({ health: { host } }) => host), ["computer99"]);
 });
 
 test("what is silent is a warning, whatever it said last", () => {

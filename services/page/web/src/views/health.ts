@@ -4,8 +4,9 @@ import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { bytes, duration } from "../units.js";
 import { Facts, make, Pace, placeChildren, setAttribute, setText } from "./dom.js";
+import type { ProcessWatch } from "./process_watch.js";
 import { Shape } from "./shapes.js";
-import { gravityOfProcess, kSilent_s, Roll } from "./traffic.js";
+import { gravityOfProcess, kSilent_s } from "./traffic.js";
 
 const words = texts.panels.health;
 const kEvery_ms = 500;
@@ -71,22 +72,15 @@ export class Processes implements View {
   private readonly cards = new Map<string, Card>();
   private readonly list = make("div");
   private readonly empty = make("p", "empty", words.none);
-  private readonly roll = new Roll();
   private isVisible = false;
   private readonly pace = new Pace(() => { this.draw(); }, () => kEvery_ms);
 
-  constructor(private readonly state: State) {
+  constructor(state: State, private readonly watch: ProcessWatch) {
     this.element.append(this.empty, this.list);
     state.on(["picture", "age"], () => {
-      if (state.showing.kind === "live" && state.hello?.mode !== "log") this.roll.take(state.picture?.health ?? [], performance.now());
       if (this.isVisible) this.pace.ask();
     });
     state.on(["showing"], () => { this.draw(); });
-    let host = "";
-    state.on(["connection"], () => {
-      if (state.hello !== null && state.hello.host !== host) this.roll.clear();
-      host = state.hello?.host ?? "";
-    });
   }
 
   setVisible(isVisible: boolean): void {
@@ -96,11 +90,7 @@ export class Processes implements View {
 
   private draw(): void {
     if (!this.isVisible) return;
-    const { picture, showing, hello } = this.state;
-    const isLive = showing.kind === "live" && hello?.mode !== "log";
-    // Of a log: against the time that is shown.
-    const listed = isLive ? this.roll.list(performance.now())
-      : (picture?.health ?? []).map((health) => ({ health, age_s: Math.max(0, (picture!.end_utime_us - health.utime_us) / 1e6) }));
+    const listed = this.watch.list();
     this.empty.hidden = listed.length > 0;
     const shown = listed.map(({ health, age_s }) => {
       const key = `${health.process}@${health.host}`;

@@ -5,6 +5,7 @@ import { AlertHistory } from "./alert_history.js";
 import { Channels } from "./channels.js";
 import { button, make, setAttribute } from "./dom.js";
 import { Processes } from "./health.js";
+import type { ProcessWatch } from "./process_watch.js";
 import { Sensors } from "./sensors.js";
 import { Tracks } from "./tracks.js";
 
@@ -17,9 +18,9 @@ export class Lists implements View {
   private shown: Name = "tracks";
   private isVisible = false;
 
-  constructor(state: State) {
+  constructor(state: State, watch: ProcessWatch) {
     this.pages = new Map<Name, View>([
-      ["tracks", new Tracks(state)], ["alerts", new AlertHistory(state)], ["health", new Processes(state)], ["channels", new Channels(state)],
+      ["tracks", new Tracks(state)], ["alerts", new AlertHistory(state)], ["health", new Processes(state, watch)], ["channels", new Channels(state)],
       ["sensors", new Sensors(state)],
     ]);
     const bar = make("div", "subtabs");

@@ -68,6 +68,11 @@ export function gravityOfProcess(state: number, age_s: number): Gravity {
   }
 }
 
+const kForgotten_ms = 600_000;
+
+/** What one process told last, and how long ago. */
+export interface Told { health: wire.Health; age_s: number }
+
 /** Processes that were heard, also those that are silent by now: a process that died is what one wants to see. */
 export class Roll {
   private readonly known = new Map<string, { health: wire.Health; heard_ms: number }>();
@@ -81,9 +86,17 @@ export class Roll {
     }
   }
   clear(): void { this.known.clear(); }
-  /** In the order of their names; what is silent for ten minutes is forgotten. */
-  list(now_ms: number): { health: wire.Health; age_s: number }[] {
-    for (const [key, { heard_ms }] of this.known) if (now_ms - heard_ms > 600_000) this.known.delete(key);
+  /** The page itself heard nothing for so long: nobody is silent for longer by that. */
+  leaveOut(deaf_ms: number): void { for (const one of this.known.values()) one.heard_ms += deaf_ms; }
+  /** In the order of their names. What is silent for ten minutes is forgotten, but never the one of its name that was heard last, where it is of the boat.
+   *  @param of_boat names of the processes of a boat */
+  list(now_ms: number, of_boat: ReadonlySet<string>): Told[] {
+    const last_ms = new Map<string, number>();
+    for (const { health: { process }, heard_ms } of this.known.values()) last_ms.set(process, Math.max(heard_ms, last_ms.get(process) ?? -Infinity));
+    for (const [key, { health: { process }, heard_ms }] of this.known) {
+      const isKept = of_boat.has(process) && heard_ms === last_ms.get(process);
+      if (now_ms - heard_ms > kForgotten_ms && !isKept) this.known.delete(key);
+    }
     return [...this.known.values()].map(({ health, heard_ms }) => ({ health, age_s: (now_ms - heard_ms) / 1000 }))
       .sort((a, b) => (a.health.process < b.health.process ? -1 : 1));
   }
