@@ -260,7 +260,8 @@ TEST_F(HangupTest, UnderNohupItOutlivesItsTerminal) {
   const auto pid = health_.pid;
   terminal.Close();
   WaitUntil([] { return false; }, seconds(1));
-  EXPECT_TRUE(WaitForHealth(health_.state)) << Text();
+  const auto last_us = health_.utime_us;
+  EXPECT_TRUE(WaitUntil([&] { return health_.utime_us > last_us; })) << Text();
   EXPECT_TRUE(WaitForStarts(1)) << Text();
   kill(pid, SIGTERM);
   EXPECT_TRUE(WaitUntil([&] { return HasEnded(pid); }, seconds(5))) << Text();

@@ -64,7 +64,10 @@ std::vector<std::string> LossesIn(const Payloads& log) {
   for (const auto& process : kFromSourceToLog) {
     if (!last.contains(process)) losses.push_back(process + " sent no HEALTH");
   }
-  const std::set<std::string> counters{"messages_not_sent", "data_lost", "data_kernel_drops", "position_kernel_drops", "udp_kernel_drops"};
+  // scans_flushed of the tracker: lidar time went back. A lidar that starts again stamps its first scan by the host, and where packets come late that
+  // is behind the next, which has the sensor's time.
+  const std::set<std::string> counters{"messages_not_sent",     "data_lost",        "data_kernel_drops",
+                                       "position_kernel_drops", "udp_kernel_drops", "scans_flushed"};
   for (const auto& [process, health] : last) {
     for (const auto& channel : health.channels) {
       if (channel.num_lost + channel.num_undecodable > 0) losses.push_back(process + " lost " + channel.channel);
