@@ -111,7 +111,7 @@ Findings CheckLookOut(const Observations& seen) {
   const auto is_active = [](const alert_t& alert) { return alert.state == alert_t::STATE_ACTIVE && alert.cause != alert_t::CAUSE_WATCH; };
   const auto& alerts = look_out.alerts->alerts;
   const auto is_of_watch = [](const alert_t& alert) { return alert.cause == alert_t::CAUSE_WATCH && alert.state <= alert_t::STATE_ACKNOWLEDGED; };
-  const auto nobody = std::ranges::find_if(alerts, [&](const alert_t& alert) { return is_of_watch(alert) && alert.id < 0; });
+  const auto nobody = std::ranges::find_if(alerts, [&](const alert_t& alert) { return is_of_watch(alert) && alert.id <= 0; });
   if (nobody != alerts.end()) return {Fault(kLookOutSubject, nobody->text, cure)};
   if (look_out.num_scans == 0 || tracks_age_s > kLookOutSilenceS) {
     return {Fault(kLookOutSubject, "ALERTS come, but no TRACKS" + (look_out.num_scans > 0 ? " for " + Fixed(tracks_age_s, 1) + " s" : ""), cure)};

@@ -101,10 +101,9 @@ void Georeferencer::ReleaseReady(std::vector<ObstaclePart>& released) {
 }
 
 void Georeferencer::ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& released) {
-  const bool is_ready = IsReady(waiting_.front().part);
   const SegmentPart part = std::move(waiting_.front().part);
   waiting_.pop_front();
-  if (second_placement_ && part.head.part_index == 0) TakeSecond(part.head, is_ready);
+  if (second_placement_ && part.head.part_index == 0) TakeSecond(part.head);
   const bool is_same_scan = second_placement_ && further_.head.seq == part.head.seq && further_.head.time == part.head.time;
   const bool is_furthered = is_same_scan && further_.num_segments > 0;
   ObstaclePart& placed = released.emplace_back();
@@ -128,8 +127,8 @@ void Georeferencer::Place(const Segment& segment, bool has_timed_out, const Plac
   counts_.Add(kObstacleCounts[static_cast<std::size_t>(obstacle.status)]);
 }
 
-void Georeferencer::TakeSecond(const ScanHead& head, bool has_waited) {
-  further_ = {.head = head, .parts = {}, .num_segments = 0, .sight = second_.SightDuring(head.time, head.end_time, has_waited)};
+void Georeferencer::TakeSecond(const ScanHead& head) {
+  further_ = {.head = head, .parts = {}, .num_segments = 0, .sight = second_.SightDuring(head.time, head.end_time)};
   num_second_silent_ += further_.sight == SecondSight::kSilent ? 1 : 0;
   num_second_holes_ += further_.sight == SecondSight::kHole ? 1 : 0;
   for (auto& segment : second_.Take(head.time, head.end_time)) {

@@ -65,7 +65,7 @@ class Georeferencer {
 
   bool IsReady(const SegmentPart& part) const;
   void ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& released);
-  void TakeSecond(const ScanHead& head, bool has_waited);
+  void TakeSecond(const ScanHead& head);
   void ReleaseSecond(const ScanHead& head, bool has_timed_out, std::vector<ObstaclePart>& released);
   void Place(const Segment& segment, bool has_timed_out, const PlacementParams& placement, ObstaclePart& placed);
   void ReleaseReady(std::vector<ObstaclePart>& released);

@@ -66,7 +66,7 @@ bool SecondLidar::Holds(Utime end_time, Utime newest_pose) const {
   return covering == scans_.end() || newest_pose < covering->end;
 }
 
-SecondSight SecondLidar::SightDuring(Utime time, Utime end_time, bool has_waited) {
+SecondSight SecondLidar::SightDuring(Utime time, Utime end_time) {
   if (last_taken_ && end_time < *last_taken_) first_time_.reset();  // the first began anew in the past
   if (!first_time_) first_time_ = time;
   if (end_time < *first_time_ + kExpected) return SecondSight::kWhole;
@@ -80,7 +80,7 @@ SecondSight SecondLidar::SightDuring(Utime time, Utime end_time, bool has_waited
   const Utime since = was_dark ? *last_taken_ : time;
   const bool has_hole = std::any_of(scans_.begin(), is_covered ? std::next(covering) : covering,
                                     [since](const Scan& scan) { return scan.end > since && !scan.is_whole; });
-  return has_hole || (!is_covered && has_waited) ? SecondSight::kHole : SecondSight::kWhole;
+  return has_hole || !is_covered ? SecondSight::kHole : SecondSight::kWhole;
 }
 
 std::vector<Segment> SecondLidar::Take(Utime time, Utime end_time) {

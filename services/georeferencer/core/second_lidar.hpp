@@ -46,8 +46,7 @@ class SecondLidar {
   /// How it looks during a scan of the first; to be asked before its segments are taken. Whole until it is expected.
   ///
   /// @param time, end_time  of the scan
-  /// @param has_waited      the scan waited as long as it must; else nobody knows whether the second is late
-  SecondSight SightDuring(Utime time, Utime end_time, bool has_waited);
+  SecondSight SightDuring(Utime time, Utime end_time);
 
   /// @return the segments that were seen since the scan of the first before, at most 0.3 s ahead of this one's beginning, until its end; all earlier
   ///         ones are forgotten. Those that were seen while the first was dark lie before `time`
