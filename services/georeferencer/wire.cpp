@@ -10,6 +10,7 @@
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
 #include "common/core/utime.hpp"
+#include "services/georeferencer/core/second_lidar.hpp"
 
 namespace lookout::georeferencer {
 
@@ -34,6 +35,8 @@ static_assert(static_cast<int>(Kind::kLand) == obstacle_t::KIND_LAND);
 static_assert(static_cast<int>(ObstacleStatus::kOk) == obstacle_t::STATUS_OK);
 static_assert(static_cast<int>(ObstacleStatus::kVesselFrameOnly) == obstacle_t::STATUS_VESSEL_FRAME_ONLY);
 static_assert(static_cast<int>(ObstacleStatus::kPoseTimeout) == obstacle_t::STATUS_POSE_TIMEOUT);
+static_assert(static_cast<int>(SecondSight::kHole) == obstacles_t::FLAG_SECOND_HOLE);
+static_assert(static_cast<int>(SecondSight::kSilent) == obstacles_t::FLAG_SECOND_SILENT);
 static_assert(static_cast<int>(obstacle_t::GROUND_FEW_RETURNS) == segment_t::GROUND_FEW_RETURNS);
 static_assert(static_cast<int>(obstacle_t::GROUND_SCATTERED) == segment_t::GROUND_SCATTERED);
 static_assert(static_cast<int>(obstacle_t::GROUND_AT_SURFACE) == segment_t::GROUND_AT_SURFACE);

@@ -104,6 +104,7 @@ std::string NameOf(const Alert& alert) {
 }
 
 std::string TextOf(const Alert& alert) {
+  if (alert.thing == kUnseenBySecond) return alert.Holds() ? "no look-out by the second lidar" : "look-out by the second lidar again";
   if (alert.cause == AlertCause::kWatch) return "no look-out";
   if (!alert.Holds()) return EndText(alert);
   const auto who = NameOf(alert);

@@ -18,6 +18,7 @@ constexpr std::size_t kMaxAcknowledgements = 100;
 constexpr std::size_t kMaxOrders = 20;
 // Room in ALERTS for the words on the guard zone.
 constexpr int kZoneTextBytes = 4096;
+constexpr std::int32_t kFlagsOfSecond = std::int32_t{obstacles_t::FLAG_SECOND_HOLE} | std::int32_t{obstacles_t::FLAG_SECOND_SILENT};
 
 }  // namespace
 
@@ -179,8 +180,9 @@ void Service::Use(const GatheredScan& scan) {
   auto& look_out = memory_->look_out;
   if (label_ && (scan.is_anew || !scan.input.datum.IsSameAs(label_->datum))) look_out.ForgetMap();
   const auto& input = scan.input;
+  // The look-out goes on without the second lidar; but what that saw may still be there.
+  watch_.NoteScan(input.time, (input.flags & ~kFlagsOfSecond) == 0);
   const bool is_whole = input.flags == 0;
-  watch_.NoteScan(input.time, is_whole);
   is_placed_ = input.own.has_value();
   if (input.own) memory_->own = input.own;
 
@@ -189,7 +191,7 @@ void Service::Use(const GatheredScan& scan) {
   const Picture& picture = memory_->tracker.Update(input);
   look_out.Rename(picture, input.end_time);
   const auto acknowledged = TakeAcknowledgements(input, picture);
-  const auto& alerts = look_out.Update(input.end_time, is_whole, picture, scan.outlines, input.own, LookAtZone(input));
+  const auto& alerts = look_out.Update(input.end_time, is_whole, picture, scan.outlines, input.own, LookForUnseen(input));
 
   const double own_up_m = input.own ? input.own->position_map_m.z() : label_ ? label_->own_up_m : 0.0;
   label_ = {scan.key(), memory_->begin, input.end_time, scan.raw_seq, input.flags, input.datum, own_up_m};
@@ -292,19 +294,29 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
   return taken;
 }
 
-// A part of the guard zone that nobody looks into is an alert like another: decided by the scans, so that a replay gives the same.
-std::optional<Danger> Service::LookAtZone(const ScanInput& input) {
+// A part of the guard zone that nobody looks into, and a second lidar that is silent, are alerts like others: decided by the scans, so that a replay
+// gives the same.
+std::vector<Danger> Service::LookForUnseen(const ScanInput& input) {
+  std::vector<Danger> unseen;
+  memory_->is_second_silent = (input.flags & obstacles_t::FLAG_SECOND_SILENT) != 0;
+  if (memory_->is_second_silent) {
+    unseen.push_back({.cause = AlertCause::kWatch, .thing = kUnseenBySecond, .probability = 1.0, .distance_m = kNan, .bearing_rad = kNan});
+  }
   auto& zone_sight = memory_->zone_sight;
   if (input.sweep) zone_sight.Update(input.end_time, *input.sweep);
-  auto danger = zone_sight.danger();
-  if (danger) memory_->zone_text = TextOf(zone_sight.parts(), zone_sight.is_whole());
-  return danger;
+  if (const auto danger = zone_sight.danger()) {
+    memory_->zone_text = TextOf(zone_sight.parts(), zone_sight.is_whole());
+    unseen.push_back(*danger);
+  }
+  return unseen;
 }
 
-// Its words, which no alert holds.
+// Words on the guard zone, which no alert holds.
 void Service::TellOfZone(alerts_t& message) const {
+  const auto& alerts = memory_->look_out.alerts();
   for (auto& alert : message.alerts) {
-    if (alert.cause != alert_t::CAUSE_WATCH) continue;
+    const auto of_look_out = std::ranges::find(alerts, alert.id, &Alert::id);
+    if (of_look_out == alerts.end() || of_look_out->cause != AlertCause::kWatch || of_look_out->thing == kUnseenBySecond) continue;
     const bool is_over = alert.state >= alert_t::STATE_RECTIFIED && memory_->zone_sight.parts().empty();
     alert.text = is_over ? "look-out in all of the guard zone again" : memory_->zone_text;
   }
@@ -369,6 +381,7 @@ HealthReport Service::Report() const {
   orders_refused_.AppendTo(report.counters);
 
   if (const auto complaint = watch_.Complaint(); !complaint.empty()) report.Degrade("no look-out: " + complaint);
+  if (memory_ && memory_->is_second_silent) report.Degrade("no look-out by the second lidar");
   if (memory_ && !memory_->zone_sight.parts().empty()) report.Degrade(memory_->zone_text);
   if (!is_placed_) report.Degrade("no position or heading: what is seen is not tracked");
   if (const auto text = obstacles_watch_.Complaint(); !text.empty()) report.Degrade(text);

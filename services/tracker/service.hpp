@@ -63,7 +63,8 @@ class Service {
     Tracker tracker;
     LookOut look_out;
     ZoneSight zone_sight;
-    std::string zone_text;  // of the last part of the guard zone that nobody looked into
+    bool is_second_silent = false;  // in the last scan
+    std::string zone_text;          // of the last part of the guard zone that nobody looked into
     KeptAcknowledgements kept;
     KeptNames kept_names;
     const Picture* picture = nullptr;  // of the last scan: the tracker's own
@@ -90,7 +91,7 @@ class Service {
   void Begin(const ScanKey& begin);
   std::vector<Acknowledgement> TakeAcknowledgements(const ScanInput& input, const Picture& picture);
   std::vector<Order> TakeOrders(const ScanInput& input);
-  std::optional<Danger> LookAtZone(const ScanInput& input);
+  std::vector<Danger> LookForUnseen(const ScanInput& input);
   void TellOfZone(alerts_t& message) const;
   void HandOver(const alerts_t& message, const Picture& picture) const;
   void SendWatch();

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Two lidars on one boat: what the first hides the second sees, a replay gives the same bytes, and so does the replay of a live run. In a network
-# namespace of its own.
+# Two lidars on one boat: what the first hides the second sees, a replay gives the same bytes, and so does the replay of a live run. While the second is
+# dead an alert says so. In a network namespace of its own.
 #   second_lidar_test.sh SOURCE_FOLDER BUILD_FOLDER
 set -euo pipefail
 source_folder=$1
@@ -94,7 +94,17 @@ for process in lidar lidar_2; do
   lidars+=($!)
 done
 sleep 1
-"$bin/lookout-sim" --config config --scene lake --seed 101 --seconds 8 --udp 127.0.0.1 >sim.txt 2>&1 || { cat sim.txt; fail "lookout-sim --udp"; }
+"$bin/lookout-sim" --config config --scene lake --seed 101 --seconds 18 --udp 127.0.0.1 >sim.txt 2>&1 &
+sim=$!
+pids+=("$sim")
+sleep 6
+kill -KILL "${lidars[1]}"
+wait "${lidars[1]}" 2>/dev/null || true
+sleep 4
+"$bin/lookout-lidar_2" --config config >lidar_2_again.txt 2>&1 &
+lidars[1]=$!
+pids+=("${lidars[1]}")
+wait "$sim" || { cat sim.txt; fail "lookout-sim --udp"; }
 sleep 2
 end() { kill -TERM "$1"; wait "$1" || fail "a process ended with $?"; }
 end "${lidars[0]}"
@@ -110,3 +120,15 @@ for channel in LIDAR_SCAN LIDAR_SCAN_2 SEGMENTS SEGMENTS_2 OBSTACLES TRACKS; do
 done
 "$bin/lookout-diff" "$log" replayed.log >diff.txt 2>&1 || { head -n 40 diff.txt; fail "the replay of the live run differs"; }
 echo "the replay of the live run is the same"
+
+# The second was dead for 4 s: said once, and taken back.
+table "$log" alerts >alerts.csv
+awk -F, '
+  NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+  /no look-out by the second lidar/ { if (!first) first = $at["utime_us"]; last = $at["utime_us"]; n += !ids[$at["alert_id"]]++ }
+  /look-out by the second lidar again/ { again = $at["utime_us"] }
+  END { print n + 0, (last - first) / 1e6, (again > last) ? 1 : 0 }' alerts.csv >second.txt
+read -r num_alerts held_s is_over <second.txt
+echo "without the second lidar: $num_alerts alert, for $held_s s, over: $is_over"
+[ "$num_alerts" = 1 ] && [ "$is_over" = 1 ] || { cat second.txt; fail "the alert of the second lidar does not come and go"; }
+awk -v held_s="$held_s" 'BEGIN { exit !(held_s > 3 && held_s < 11) }' || fail "the alert of the second lidar holds for $held_s s"

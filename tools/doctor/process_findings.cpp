@@ -109,23 +109,19 @@ Findings CheckLookOut(const Observations& seen) {
     return {Fault(kLookOutSubject, "no look-out: no ALERTS" + (look_out.alerts ? " for " + Fixed(alerts_age_s, 1) + " s" : ""), cure)};
   }
   const auto is_active = [](const alert_t& alert) { return alert.state == alert_t::STATE_ACTIVE && alert.cause != alert_t::CAUSE_WATCH; };
-  const auto find_watch = [&look_out](bool is_of_zone) {
-    const auto& alerts = look_out.alerts->alerts;
-    const auto found = std::ranges::find_if(alerts, [is_of_zone](const alert_t& alert) {
-      return alert.cause == alert_t::CAUSE_WATCH && (alert.id > 0) == is_of_zone && alert.state <= alert_t::STATE_ACKNOWLEDGED;
-    });
-    return found == alerts.end() ? nullptr : &*found;
-  };
-  if (const auto* nobody = find_watch(false)) return {Fault(kLookOutSubject, nobody->text, cure)};
+  const auto& alerts = look_out.alerts->alerts;
+  const auto is_of_watch = [](const alert_t& alert) { return alert.cause == alert_t::CAUSE_WATCH && alert.state <= alert_t::STATE_ACKNOWLEDGED; };
+  const auto nobody = std::ranges::find_if(alerts, [&](const alert_t& alert) { return is_of_watch(alert) && alert.id <= 0; });
+  if (nobody != alerts.end()) return {Fault(kLookOutSubject, nobody->text, cure)};
   if (look_out.num_scans == 0 || tracks_age_s > kLookOutSilenceS) {
     return {Fault(kLookOutSubject, "ALERTS come, but no TRACKS" + (look_out.num_scans > 0 ? " for " + Fixed(tracks_age_s, 1) + " s" : ""), cure)};
   }
   const std::string words = Fixed(static_cast<double>(look_out.num_scans) / seen.watched_s, 1) + " scans/s, " + Count(look_out.num_tracks, "track") +
                             ", " + std::to_string(look_out.num_moving) + " moving";
-  const auto& alerts = look_out.alerts->alerts;
   Findings findings;
-  if (const auto* zone = find_watch(true)) {
-    findings.push_back(Warning(kLookOutSubject, zone->text, "the zone line above; keep a look-out by eye there"));
+  for (const auto& alert : alerts) {
+    if (!is_of_watch(alert)) continue;
+    findings.push_back(Warning(kLookOutSubject, alert.text, "the zone and process lines above; keep a look-out by eye there"));
   }
   const auto num_active = std::ranges::count_if(alerts, is_active);
   if (num_active == 0) {
@@ -150,6 +146,7 @@ Findings CheckProcesses(const Observations& seen) {
   }
   std::set<std::string> names;
   for (const auto& service : bus::kServices) names.emplace(service.name);
+  if (seen.config.files.contains("lidar_2.txtpb")) names.emplace("lidar_2");
   for (const auto& [name, instances] : seen.processes) names.insert(name);
   Findings findings;
   for (const auto& name : names) {

@@ -104,9 +104,11 @@ void Georeferencer::ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& 
   const SegmentPart part = std::move(waiting_.front().part);
   waiting_.pop_front();
   if (second_placement_ && part.head.part_index == 0) TakeSecond(part.head);
-  const bool is_furthered = further_.num_segments > 0 && further_.head.seq == part.head.seq && further_.head.time == part.head.time;
+  const bool is_same_scan = second_placement_ && further_.head.seq == part.head.seq && further_.head.time == part.head.time;
+  const bool is_furthered = is_same_scan && further_.num_segments > 0;
   ObstaclePart& placed = released.emplace_back();
   placed.head = part.head;
+  if (is_same_scan) placed.head.scan_flags |= static_cast<std::int32_t>(further_.sight);
   if (is_furthered) {
     placed.head.num_parts += static_cast<std::int32_t>(further_.parts.size());
     placed.head.num_scan_segments += further_.num_segments;
@@ -126,7 +128,9 @@ void Georeferencer::Place(const Segment& segment, bool has_timed_out, const Plac
 }
 
 void Georeferencer::TakeSecond(const ScanHead& head) {
-  further_ = {.head = head, .parts = {}, .num_segments = 0};
+  further_ = {.head = head, .parts = {}, .num_segments = 0, .sight = second_.SightDuring(head.time, head.end_time)};
+  num_second_silent_ += further_.sight == SecondSight::kSilent ? 1 : 0;
+  num_second_holes_ += further_.sight == SecondSight::kHole ? 1 : 0;
   for (auto& segment : second_.Take(head.time, head.end_time)) {
     // So few fit into one message, however large their outlines are.
     constexpr std::size_t kSegmentsOfPart = 18;
@@ -162,6 +166,10 @@ std::vector<Counter> Georeferencer::counters() const {
   counts["segments_of_second_untimely"] = second_.num_untimely();
   std::vector<Counter> counters;
   counts.AppendTo(counters);
+  if (second_placement_) {
+    counters.push_back({"scans_without_second", num_second_silent_});
+    counters.push_back({"scans_with_hole_of_second", num_second_holes_});
+  }
   return counters;
 }
 

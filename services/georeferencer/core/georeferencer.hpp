@@ -75,6 +75,7 @@ class Georeferencer {
     ScanHead head;  // of the scan's first part
     std::vector<std::vector<Segment>> parts;
     std::int32_t num_segments = 0;
+    SecondSight sight = SecondSight::kWhole;
   };
 
   PlacementParams placement_;
@@ -87,6 +88,8 @@ class Georeferencer {
   std::optional<Utime> host_time_;
   std::optional<Utime> pose_arrival_;  // host time of the last, or from when on it is known
   std::optional<Utime> last_timeout_;
+  std::int64_t num_second_silent_ = 0;  // scans of the first
+  std::int64_t num_second_holes_ = 0;
   Counts<kCountNames> counts_;
 };
 

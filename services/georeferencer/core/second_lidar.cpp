@@ -1,6 +1,8 @@
 #include "services/georeferencer/core/second_lidar.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace lookout::georeferencer {
@@ -17,20 +19,22 @@ constexpr std::chrono::seconds kKept(10);
 
 void SecondLidar::Add(const SegmentPart& part) {
   const Utime end = part.head.end_time;
-  if (!ends_.empty() && end < ends_.back()) {
+  if (!scans_.empty() && end < scans_.back().end) {
     // It began anew in the past.
     num_dropped_ += static_cast<std::int64_t>(segments_.size());
     segments_.clear();
-    ends_.clear();
+    scans_.clear();
     began_.reset();
+    seq_.reset();
   }
+  NotePart(part.head);
   // A scan has come whole with its last part. One whose last part was lost is covered by the next.
   if (part.head.part_index == part.head.num_parts - 1) {
-    if (!began_ || (!ends_.empty() && end - ends_.back() > kSilence)) began_ = end;
-    if (ends_.empty() || ends_.back() != end) ends_.push_back(end);
+    if (!began_ || (!scans_.empty() && end - scans_.back().end > kSilence)) began_ = end;
+    if (scans_.empty() || scans_.back().end != end) scans_.push_back({end, is_whole_});
   }
   for (const auto& segment : part.segments) segments_.push_back(segment);
-  while (ends_.size() > 1 && (end - ends_.front() > kKept || ends_.size() > kMaxKept)) ends_.pop_front();
+  while (scans_.size() > 1 && (end - scans_.front().end > kKept || scans_.size() > kMaxKept)) scans_.pop_front();
   while (!segments_.empty() && (end - segments_.front().time > kKept || segments_.size() > kMaxKept)) {
     // No scan of the first came so far.
     if (last_taken_ && end - segments_.front().time > kKept) ++num_untimely_;
@@ -39,15 +43,44 @@ void SecondLidar::Add(const SegmentPart& part) {
   }
 }
 
+// A scan is whole where all its parts came in their order, and it follows the one before.
+void SecondLidar::NotePart(const ScanHead& head) {
+  if (head.part_index == 0 || seq_ != head.seq) {
+    is_whole_ = head.scan_flags == 0 && head.part_index == 0 && (!seq_ || (has_ended_ && head.seq == *seq_ + 1));
+    next_part_ = 0;
+  }
+  is_whole_ = is_whole_ && head.part_index == next_part_;
+  has_ended_ = head.part_index == head.num_parts - 1;
+  seq_ = head.seq;
+  ++next_part_;
+}
+
 bool SecondLidar::IsGoingOn(Utime end_time) const {
-  return began_ && !ends_.empty() && end_time >= *began_ + kSettled && end_time <= ends_.back() + kSilence;
+  return began_ && !scans_.empty() && end_time >= *began_ + kSettled && end_time <= scans_.back().end + kSilence;
 }
 
 bool SecondLidar::Holds(Utime end_time, Utime newest_pose) const {
   if (!IsGoingOn(end_time) || newest_pose >= end_time + kMaxWait) return false;
-  const auto covering = std::ranges::lower_bound(ends_, end_time);
+  const auto covering = std::ranges::lower_bound(scans_, end_time, {}, &Scan::end);
   // Corners of a segment may have been seen after it.
-  return covering == ends_.end() || newest_pose < *covering;
+  return covering == scans_.end() || newest_pose < covering->end;
+}
+
+SecondSight SecondLidar::SightDuring(Utime time, Utime end_time) {
+  if (last_taken_ && end_time < *last_taken_) first_time_.reset();  // the first began anew in the past
+  if (!first_time_) first_time_ = time;
+  if (end_time < *first_time_ + kExpected) return SecondSight::kWhole;
+  const auto num_whole =
+      std::ranges::count_if(scans_, [end_time](const Scan& scan) { return scan.is_whole && scan.end <= end_time && scan.end > end_time - kWithin; });
+  if (!IsGoingOn(end_time) || num_whole < static_cast<std::ptrdiff_t>(kWholeScans)) return SecondSight::kSilent;
+  // Of its scans those that began before this one ended count; while the first is dark, too.
+  const auto covering = std::ranges::lower_bound(scans_, end_time, {}, &Scan::end);
+  const bool is_covered = covering != scans_.end() && covering->end <= end_time + kBetweenScans;
+  const bool was_dark = last_taken_ && *last_taken_ < time && *last_taken_ >= time - kBetweenScans;
+  const Utime since = was_dark ? *last_taken_ : time;
+  const bool has_hole = std::any_of(scans_.begin(), is_covered ? std::next(covering) : covering,
+                                    [since](const Scan& scan) { return scan.end > since && !scan.is_whole; });
+  return has_hole || !is_covered ? SecondSight::kHole : SecondSight::kWhole;
 }
 
 std::vector<Segment> SecondLidar::Take(Utime time, Utime end_time) {

@@ -22,6 +22,8 @@ inline constexpr std::int64_t kLandTrack = 0;
 inline constexpr std::int64_t kUnnamed = -1;
 // Those of -2 and below are tentative tracks; from here down they are parts of the guard zone that nobody looks into.
 inline constexpr std::int64_t kFirstUnseenId = -1'000'000;
+// What a second lidar would see, which does not look; the parts of the zone are below it.
+inline constexpr std::int64_t kUnseenBySecond = kFirstUnseenId;
 // An alert that many things share.
 constexpr bool IsOfPlaces(std::int64_t thing) { return thing == kLandTrack || thing == kUnnamed || thing <= kFirstUnseenId; }
 

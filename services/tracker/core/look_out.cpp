@@ -60,12 +60,12 @@ void LookOut::Name(const Picture& picture, Utime time) {
 }
 
 const std::vector<Alert>& LookOut::Update(Utime time, bool is_whole, const Picture& picture, std::span<const VesselOutline> outlines,
-                                          const std::optional<Pose>& own, const std::optional<Danger>& unseen) {
+                                          const std::optional<Pose>& own, std::span<const Danger> unseen) {
   is_own_still_ = still_.Update(time, own ? Eigen::Vector2d(own->velocity_map_mps) : Eigen::Vector2d::Constant(kNan));
   auto dangers = GuardZoneDangers(limits_.guard_zone, picture, outlines, own, things_, &newcomers_, time, is_own_still_ ? &proof_ : nullptr);
   std::ranges::move(ClosestApproachDangers({limits_.cpa_limit_m, params_.ability}, picture, own, is_own_still_, things_, &proof_, time),
                     std::back_inserter(dangers));
-  if (unseen) dangers.push_back(*unseen);
+  std::ranges::copy(unseen, std::back_inserter(dangers));
   told_ = alerts_.Update(time, is_whole, dangers, {own, std::span(picture.tracks)});
   for (const auto& [from, to] : alerts_.adopted()) names_.Rename(from, to);
   names_.Update(time, picture.tracks, told_);

@@ -42,9 +42,9 @@ class LookOut {
   bool Acknowledge(const Acknowledgement& acknowledgement, Utime time) { return alerts_.Acknowledge(acknowledgement, time); }
 
   /// @param own     placed, at the end of the scan
-  /// @param unseen  parts of the guard zone that nobody looks into
+  /// @param unseen  parts of the guard zone that nobody looks into, and what a second lidar that is silent would see
   const std::vector<Alert>& Update(Utime time, bool is_whole, const Picture& picture, std::span<const VesselOutline> outlines,
-                                   const std::optional<Pose>& own, const std::optional<Danger>& unseen);
+                                   const std::optional<Pose>& own, std::span<const Danger> unseen);
 
   void ForgetMap() {
     alerts_.ForgetMap();

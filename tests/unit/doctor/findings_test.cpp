@@ -65,6 +65,12 @@ TEST(DoctorLookOut, SaysThatAPartOfTheGuardZoneIsNotLookedInto) {
   boat.text = "boat 17 in the guard zone: 7.3 m, 12 deg to port";
   seen.look_out.alerts->alerts = {boat, alert};
   EXPECT_SAYS(About(CheckProcesses(seen), "look-out"), kWarning, "1 alert, the gravest: boat 17");
+  alert_t second = alert;
+  second.id = 5;
+  second.text = "no look-out by the second lidar";
+  seen.look_out.alerts->alerts = {boat, alert, second};
+  EXPECT_SAYS(About(CheckProcesses(seen), "look-out"), kWarning, "no look-out in part of the guard zone");
+  EXPECT_SAYS(About(CheckProcesses(seen), "look-out"), kWarning, "no look-out by the second lidar");
 }
 
 TEST(DoctorGuardZone, SaysWhatTheLidarCannotLookInto) {

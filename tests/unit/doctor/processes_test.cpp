@@ -58,6 +58,15 @@ TEST(DoctorProcesses, MissesThePlotterOnlyWhereItHasOutputs) {
   EXPECT_EQ(About(CheckProcesses(seen), "process").grade, kOk);
 }
 
+TEST(DoctorProcesses, MissesTheSecondLidarOnlyWhereItHasAConfig) {
+  auto seen = Healthy();
+  EXPECT_EQ(About(CheckProcesses(seen), "process").grade, kOk);
+  seen.config.files["lidar_2.txtpb"] = {};
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "lidar_2 is not heard, others are");
+  seen.processes["lidar_2"].push_back(Running("lidar_2", 8));
+  EXPECT_EQ(About(CheckProcesses(seen), "process").grade, kOk);
+}
+
 TEST(DoctorPage, SaysWhoSeesThePicture) {
   auto seen = Healthy();
   seen.config.page.reset();

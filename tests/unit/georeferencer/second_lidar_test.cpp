@@ -102,7 +102,10 @@ TEST(SecondLidar, ChangesNothingWhereItIsSilent) {
   const auto with = FeedBoth(georeferencer, {.has_second = false});
   const auto without = FeedBoth(alone, {.has_second = false});
   ASSERT_EQ(with.size(), without.size());
-  for (std::size_t i = 0; i < with.size(); ++i) EXPECT_EQ(with[i].head.num_parts, without[i].head.num_parts);
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    EXPECT_EQ(with[i].head.num_parts, without[i].head.num_parts);
+    EXPECT_EQ(without[i].head.scan_flags, 0) << "with one lidar nobody expects a second";
+  }
 }
 
 // Live or replayed, fast POSE or slow: the same scans have the same obstacles.
@@ -117,6 +120,7 @@ TEST(SecondLidar, GivesTheSameHoweverTheChannelsInterleave) {
       ASSERT_EQ(all.size(), expected.size()) << pose_delay_us << " " << second_delay_us << " " << first_without_second;
       for (std::size_t i = 0; i < all.size(); ++i) {
         EXPECT_EQ(all[i].head.seq, expected[i].head.seq);
+        EXPECT_EQ(all[i].head.scan_flags, expected[i].head.scan_flags) << i;
         ASSERT_EQ(all[i].obstacles.size(), expected[i].obstacles.size()) << i;
         for (std::size_t k = 0; k < all[i].obstacles.size(); ++k) {
           EXPECT_EQ(all[i].obstacles[k].id, expected[i].obstacles[k].id);
@@ -127,6 +131,100 @@ TEST(SecondLidar, GivesTheSameHoweverTheChannelsInterleave) {
     }
   }
 }
+
+constexpr auto kHoleFlag = static_cast<std::int32_t>(SecondSight::kHole);
+constexpr auto kSilentFlag = static_cast<std::int32_t>(SecondSight::kSilent);
+
+// Both run; what the second sends, by the number of its scan, is changed by the caller. The flags of each scan of the first, by its number.
+template <typename Change>
+std::vector<std::int32_t> FlagsWith(const Change& change, int num_scans = 80) {
+  auto georeferencer = MakeTwo();
+  std::vector<std::int32_t> flags(static_cast<std::size_t>(num_scans), -1);
+  const auto keep = [&flags](const std::vector<ObstaclePart>& parts) {
+    for (const auto& part : parts) {
+      auto& known = flags.at(static_cast<std::size_t>(part.head.seq));
+      EXPECT_TRUE(known < 0 || known == part.head.scan_flags) << "the parts of scan " << part.head.seq << " differ";
+      known = part.head.scan_flags;
+    }
+  };
+  for (int number = 0; number < num_scans; ++number) {
+    keep(georeferencer.AddSegments(FirstScan(number)));
+    if (auto part = SecondScan(number); change(number, part)) keep(georeferencer.AddSecond(part));
+    for (std::int64_t at_us = kScanUs * number; at_us < kScanUs * (number + 1); at_us += 20'000) keep(georeferencer.AddPose(MakePose(at_us)));
+  }
+  for (int number = num_scans; number < num_scans + 10; ++number) {
+    for (std::int64_t at_us = kScanUs * number; at_us < kScanUs * (number + 1); at_us += 20'000) keep(georeferencer.AddPose(MakePose(at_us)));
+  }
+  return flags;
+}
+
+TEST(SecondLidar, ThatLooksLeavesScansWhole) {
+  const auto flags = FlagsWith([](int, SegmentPart&) { return true; });
+  for (std::size_t i = 0; i + 2 < flags.size(); ++i) EXPECT_EQ(flags[i], 0) << i;
+}
+
+TEST(SecondLidar, ThatDiesIsSaidToBeSilentUntilItLooksAgain) {
+  const auto flags = FlagsWith([](int number, SegmentPart&) { return number < 40 || number >= 60; });
+  for (std::size_t i = 0; i < 39; ++i) EXPECT_EQ(flags[i], 0) << i;
+  for (std::size_t i = 41; i < 47; ++i) EXPECT_EQ(flags[i], kHoleFlag) << i << ": it may be late";
+  for (std::size_t i = 49; i < 68; ++i) EXPECT_EQ(flags[i], kSilentFlag) << i;
+  for (std::size_t i = 72; i < 78; ++i) EXPECT_EQ(flags[i], 0) << i;
+}
+
+// The lidar is unplugged before the boat leaves.
+TEST(SecondLidar, ThatNeverSpeaksIsExpectedAfterThreeSeconds) {
+  const auto flags = FlagsWith([](int, SegmentPart&) { return false; });
+  for (std::size_t i = 0; i < flags.size(); ++i) EXPECT_EQ(flags[i], i < 30 ? 0 : kSilentFlag) << i;
+}
+
+TEST(SecondLidar, WhoseScanHasAHoleMakesScansThatAreNotWhole) {
+  // Seen from 5.03 to 5.129 s.
+  const auto holed = FlagsWith([](int number, SegmentPart& part) {
+    part.head.scan_flags = number == 50 ? 4 : 0;
+    return true;
+  });
+  for (std::size_t i = 40; i < 60; ++i) EXPECT_EQ(holed[i], i == 50 || i == 51 ? kHoleFlag : 0) << i;
+  // A scan that did not come is known by the next, which counts as holed, too.
+  const auto lost = FlagsWith([](int number, SegmentPart&) { return number != 50; });
+  for (std::size_t i = 40; i < 60; ++i) EXPECT_EQ(lost[i], i >= 50 && i <= 52 ? kHoleFlag : 0) << i;
+}
+
+TEST(SecondLidar, WithAHoleInMostScansIsNoLookOut) {
+  const auto flags = FlagsWith([](int number, SegmentPart& part) {
+    part.head.scan_flags = number >= 40 && number % 5 != 0 ? 4 : 0;
+    return true;
+  });
+  for (std::size_t i = 52; i < 78; ++i) EXPECT_EQ(flags[i], kSilentFlag) << i;
+}
+
+// Of a scan in two parts one is lost.
+void LosePart(int lost_part, std::int64_t num_with_hole) {
+  auto georeferencer = MakeTwo();
+  std::vector<std::int32_t> flags(60);
+  for (int number = 0; number < 60; ++number) {
+    georeferencer.AddSegments(FirstScan(number));
+    for (int i = 0; i < 2; ++i) {
+      if (number == 50 && i == lost_part) continue;
+      auto part = SecondScan(number);
+      part.head.part_index = i;
+      part.head.num_parts = 2;
+      georeferencer.AddSecond(part);
+    }
+    for (std::int64_t at_us = kScanUs * number; at_us < kScanUs * (number + 1); at_us += 20'000) {
+      for (const auto& part : georeferencer.AddPose(MakePose(at_us))) flags[static_cast<std::size_t>(part.head.seq)] = part.head.scan_flags;
+    }
+  }
+  EXPECT_EQ(flags[49], 0);
+  EXPECT_EQ(flags[50], kHoleFlag);
+  EXPECT_EQ(flags[51], kHoleFlag);
+  EXPECT_EQ(flags[53], 0);
+  EXPECT_EQ(support::CountOf(georeferencer, "scans_with_hole_of_second"), num_with_hole);
+  EXPECT_EQ(support::CountOf(georeferencer, "scans_without_second"), 0);
+}
+
+TEST(SecondLidar, WithoutItsFirstPartHasAHole) { LosePart(0, 2); }
+// Known by the next scan, which counts as holed, too.
+TEST(SecondLidar, WithoutItsLastPartHasAHole) { LosePart(1, 3); }
 
 // One that dies costs half a second for two seconds, and then nothing.
 TEST(SecondLidar, ThatDiesHoldsNothingUp) {

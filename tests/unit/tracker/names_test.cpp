@@ -50,7 +50,7 @@ class NamesOfThings : public ::testing::Test {
       for (auto& track : picture_.tracks) track.seen = time_;
       look_out_.Begin(own_);
       look_out_.Rename(picture_, time_);
-      look_out_.Update(time_, true, picture_, {}, own_, std::nullopt);
+      look_out_.Update(time_, true, picture_, {}, own_, {});
       picture_.merged.clear();
     }
   }

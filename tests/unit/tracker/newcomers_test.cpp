@@ -84,7 +84,7 @@ class LookOutTest : public ::testing::Test {
     picture_.tracks = tracks;
     look_out_.Begin(own_);
     look_out_.Rename(picture_, time_);
-    return look_out_.Update(time_, true, picture_, outlines, own_, std::nullopt);
+    return look_out_.Update(time_, true, picture_, outlines, own_, {});
   }
   static VesselOutline Sure(double ahead_m, std::int32_t id = 1) {
     VesselOutline outline;

@@ -120,6 +120,35 @@ TEST(TrackerServiceWithAGuardZone, WarnsWithoutPose) {
   EXPECT_EQ(alerts.back().alerts[0].state, alert_t::STATE_RECTIFIED) << "nobody took note";
 }
 
+// The thing astern, which the second lidar saw, is not gone because that lidar is dead. The first looks, and the watch is content.
+TEST(TrackerServiceWithAGuardZone, EndsNoAlertByScansWithoutTheSecondLidar) {
+  for (const std::int32_t flags : {0, int{obstacles_t::FLAG_SECOND_HOLE}, int{obstacles_t::FLAG_SECOND_SILENT}}) {
+    auto params = test::MakeParams();
+    params.look_out.limits.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
+    bus::MemoryBus bus;
+    Service service(bus, params);
+    std::vector<alerts_t> alerts;
+    bus::Subscribe<alerts_t>(bus, bus::kAlerts, [&](const alerts_t& message) { alerts.push_back(message); });
+    service.AdvanceTo(Host(milliseconds(0)));
+    for (int i = 0; i < 60; ++i) {
+      service.AdvanceTo(Host(milliseconds(1000 + 100 * i)));
+      bus::Publish(bus, bus::kLidarScan, test::MakeScan(test::kScanUs * i, i));
+      bus::Publish(bus, bus::kSegments, test::MakeSegments(test::kScanUs * i, i));
+      const auto obstacle = test::MakeObstacle(1, test::kStartUs + test::kScanUs * i, {i < 10 ? 8.0 : 30.0, 0.0});
+      auto message = test::MakeObstacles(test::kScanUs * i, i, {obstacle});
+      if (i >= 10) message.scan_flags = flags;
+      bus::Publish(bus, bus::kObstacles, test::InTheVesselFrame(message, obstacle_t::STATUS_POSE_TIMEOUT));
+      support::HandleAll(bus);
+      service.AdvanceTo(Host(milliseconds(1010 + 100 * i)));
+      support::HandleAll(bus);
+      ASSERT_FALSE(alerts.back().is_watch) << flags;
+    }
+    const auto of_zone = std::ranges::find(alerts.back().alerts, std::int32_t{alert_t::CAUSE_GUARD_ZONE}, &alert_t::cause);
+    ASSERT_NE(of_zone, alerts.back().alerts.end());
+    EXPECT_EQ(of_zone->state == alert_t::STATE_ACTIVE, flags != 0) << flags;
+  }
+}
+
 // Without position or heading all that is in the zone shares one alert: a buoy was acknowledged, a motor boat crossed 8 m ahead, and nothing rang.
 TEST(TrackerServiceWithAGuardZone, RingsWithoutPoseForABoatBesideABuoyThatWasAcknowledged) {
   auto params = test::MakeParams();

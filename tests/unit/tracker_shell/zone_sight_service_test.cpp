@@ -27,7 +27,7 @@ Params MakeZoneParams() {
 class TrackerServiceZone : public support::BusTest {
  protected:
   // Scans over empty water of a lidar that fires from one azimuth clockwise to another.
-  void Scans(int count, double from_deg, double to_deg) {
+  void Scans(int count, double from_deg, double to_deg, std::int32_t flags = 0) {
     for (int i = 0; i < count; ++i, ++number_) {
       const auto offset_us = test::kScanUs * number_;
       for (int k = 1; k <= 5; ++k) Send(bus::kPose, test::MakePose(offset_us + 20'000 * k, 5 * number_ + k));
@@ -35,7 +35,9 @@ class TrackerServiceZone : public support::BusTest {
       const auto sweep = test::MakeSweep(offset_us, number_, from_deg, to_deg);
       Send(bus::kLidarScan, sweep);
       Send(bus::kSegments, test::MakeNoSegments(sweep));
-      Send(bus::kObstacles, test::MakeObstacles(offset_us, number_, {}));
+      auto obstacles = test::MakeObstacles(offset_us, number_, {});
+      obstacles.scan_flags = flags;
+      Send(bus::kObstacles, obstacles);
     }
   }
   // The last word of the zone; empty: none.
@@ -112,6 +114,50 @@ TEST_F(TrackerServiceZone, RaisesAnewWhatWasNotTold) {
   EXPECT_GT(Told().id, first.id);
   EXPECT_EQ(Told().state, alert_t::STATE_ACTIVE);
   EXPECT_EQ(Told().text, "no look-out in part of the guard zone: 0 to 50 deg (the lidar does not fire there)");
+}
+
+constexpr std::int32_t kSecondSilent = obstacles_t::FLAG_SECOND_SILENT;
+
+// Its cable is pulled: ALERTS said nothing, and the stern was blind.
+TEST_F(TrackerServiceZone, SaysThatTheSecondLidarDoesNotLook) {
+  Scans(10, 0.0, 360.0);
+  Scans(2, 0.0, 360.0, kSecondSilent);
+  EXPECT_TRUE(alerts_.back().alerts.empty());
+  Scans(3, 0.0, 360.0, kSecondSilent);
+  const auto alert = Told();
+  EXPECT_EQ(alert.cause, alert_t::CAUSE_WATCH);
+  EXPECT_EQ(alert.level, alert_t::LEVEL_CAUTION);
+  EXPECT_EQ(alert.state, alert_t::STATE_ACTIVE);
+  EXPECT_GT(alert.id, 0) << "ids below 0 are of the watch that goes by the clock";
+  EXPECT_EQ(alert.track_id, 0);
+  EXPECT_EQ(alert.text, "no look-out by the second lidar");
+  EXPECT_EQ(alerts_.back().sounding_alert_id, alert.id);
+  EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
+  EXPECT_NE(service_.Report().reason.find("no look-out by the second lidar"), std::string::npos) << service_.Report().reason;
+
+  Scans(60, 0.0, 360.0);
+  EXPECT_TRUE(alerts_.back().alerts.empty());
+  const auto last = std::ranges::find_if(
+      alerts_, [](const alerts_t& message) { return !message.alerts.empty() && message.alerts.front().state == alert_t::STATE_CLEARED; });
+  ASSERT_NE(last, alerts_.end());
+  EXPECT_EQ(last->alerts.front().id, alert.id);
+  EXPECT_EQ(last->alerts.front().text, "look-out by the second lidar again");
+  EXPECT_EQ(service_.Report().reason.find("look-out"), std::string::npos) << service_.Report().reason;
+}
+
+TEST_F(TrackerServiceZone, TellsTheSecondLidarBesideAPartOfTheZone) {
+  Scans(45, 20.3, 359.5, kSecondSilent);
+  ASSERT_EQ(alerts_.back().num_alerts, 2);
+  const auto has = [this](const std::string& text) {
+    return std::ranges::any_of(alerts_.back().alerts, [&text](const alert_t& alert) { return alert.text == text; });
+  };
+  EXPECT_TRUE(has("no look-out by the second lidar"));
+  EXPECT_TRUE(has("no look-out in part of the guard zone: 0 to 20 deg (the lidar does not fire there)"));
+}
+
+TEST_F(TrackerServiceZone, SaysNothingOfAHoleOfTheSecondLidar) {
+  Scans(60, 0.0, 360.0, obstacles_t::FLAG_SECOND_HOLE);
+  for (const auto& message : alerts_) EXPECT_TRUE(message.alerts.empty());
 }
 
 TEST(ZoneText, NamesThreePartsAndHowManyMore) {
