@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string>
 
+#include "common/core/angles.hpp"
 #include "services/navigator/core/lines.hpp"
 
 namespace lookout::navigator {
@@ -144,12 +146,17 @@ HealthReport Service::Report() const {
   if (!filter.stopped().empty()) add(filter.stopped());
   if (filter.is_carried_by_lidar()) add("carried on by the lidar's own motion meanwhile");
   if (filter.contradicts_lidar()) add("own motion by the lidar is not used: it contradicts the other sensors");
+  if (const auto apart_rad = filter.heading_apart_rad(); apart_rad != 0.0) {
+    add("compass and own motion by the lidar have turned apart by " + std::to_string(std::llround(RadToDeg(std::abs(apart_rad)))) +
+        " deg within minutes: the compass is disturbed, or what the lidar sees turns");
+  }
   if (!filter.doubted().empty()) add(filter.doubted());
   if (!filter.last_fix_arrival()) add("no position fix yet");
   if (!pose || (pose->heading_source == HeadingSource::kNone && !filter.has_had_heading())) add("no heading");
   if (pose && pose->heading_source == HeadingSource::kCourse) add("heading is only the course over ground: no compass or attitude sensor");
   if (pose && pose->status == PoseStatus::kRelativeToBoat) {
-    add("POSE is relative to the boat: no position, and the lidar does not tell the own motion");
+    add(navigator_.HasOdometry() ? "POSE is relative to the boat: no position, and the lidar does not tell the own motion"
+                                 : "POSE is relative to the boat: no position, and no LIDAR_ODOMETRY comes");
   } else if (pose && (pose->status == PoseStatus::kRelative || pose->status == PoseStatus::kRelativeCoasting)) {
     add("POSE is relative: it began where the boat was, and its way is by the lidar");
   }

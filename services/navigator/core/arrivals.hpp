@@ -18,6 +18,8 @@ class Arrivals {
  public:
   /// A sentence that may be late by no more than this counts: buses and serial drivers deliver several at once.
   static constexpr std::chrono::milliseconds kMaxLateness{100};
+  /// No buffer holds more at the rate at which it is drained: what comes faster for longer is a sensor that sends more often now.
+  static constexpr std::chrono::seconds kMaxDraining{15};
   /// An interval is learned from so many, over so long.
   static constexpr int kMinCount = 10;
   static constexpr std::chrono::seconds kMinLearning{1};
@@ -41,6 +43,7 @@ class Arrivals {
   std::int64_t num_learned_ = 0;
   // After a gap: how late the last one was, if it is of a queue; and how late at the begin of a while in which a queue would have become shorter.
   bool is_queue_ = false;
+  Utime queue_begin_{};
   microseconds lateness_{0};
   microseconds gap_{0};  // the last interval, where it was a gap
   Utime while_begin_{};

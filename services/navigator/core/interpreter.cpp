@@ -306,7 +306,7 @@ Reading Interpreter::ReadVelocity(const Item& item, Source& source, const Senten
   const auto when = is_of_epoch ? std::optional(source.epoch->fix.when) : WhenArrived(item, source, vtg.type);
   if (!when) return {};
   Reading reading;
-  reading.velocity = GroundVelocity{when->time, vtg.speed_mps, CourseOf(vtg.speed_mps, vtg.course_rad)};
+  reading.velocity = GroundVelocity{when->time, vtg.speed_mps, CourseOf(vtg.speed_mps, vtg.course_rad), item.source};
   return reading;
 }
 

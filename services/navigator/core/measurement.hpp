@@ -55,6 +55,7 @@ struct GroundVelocity {
   Utime time;
   double speed_mps = kNan;
   double course_rad = kNan;
+  std::string source{};  // as in Item
 };
 
 /// How fast the bow turns, out of ROT.

@@ -22,6 +22,7 @@ NavigatorOutput Navigator::Consume(const Item& item) {
   if (!time_) next_pose_ = CeilToPose(item.time);
   if (time_ && item.time - *time_ > kMaxGap) {
     ++num_time_jumps_;
+    relative_.Skip(item.time - *time_);
     next_pose_ = CeilToPose(item.time);
   }
   time_ = item.time;
@@ -48,11 +49,13 @@ void Navigator::Reset() {
   filter_.Reset();
   interpreter_.Reset();
   last_pose_.reset();
+  last_motion_.reset();
   time_.reset();
 }
 
 void Navigator::AppendPose(NavigatorOutput& output) {
-  last_pose_ = relative_.At(filter_.At(next_pose_), params_.filter.unmeasured_tilt_sd_rad);
+  last_pose_ = filter_.At(next_pose_);
+  if (params_.use_lidar_odometry) last_pose_ = relative_.At(*last_pose_, params_.filter.unmeasured_tilt_sd_rad);
   output.poses.push_back(*last_pose_);
   next_pose_ += kPosePeriod;
 }
@@ -64,7 +67,13 @@ void Navigator::OnOdometry(const Item& item) {
     return;
   }
   ++num_motions_;
-  filter_.Add(*motion, item.time);
+  last_motion_ = item.time;
+  relative_.NoteMotion();
+  if (motion->end > item.time + kMaxAhead) {
+    ++num_motions_ahead_;
+    return;
+  }
+  filter_.Add(*motion);
   if (relative_.Wants(item.time)) relative_.Add(*motion);
 }
 
@@ -79,12 +88,15 @@ void Navigator::OnSentence(const Item& item, NavigatorOutput& output) {
   output.attitude = reading.attitude;
 }
 
+bool Navigator::HasOdometry() const { return last_motion_ && *time_ - *last_motion_ <= std::chrono::seconds(2); }
+
 std::vector<Counter> Navigator::counters() const {
   auto counters = interpreter_.counters();
   filter_.counts().AppendTo(counters);
   counters.push_back({"time_jump", num_time_jumps_});
   counters.push_back({"odometry_used", num_motions_});
   counters.push_back({"odometry_bad", num_bad_motions_});
+  counters.push_back({"odometry_ahead", num_motions_ahead_});
   counters.push_back({"relative_frames", relative_.num_frames()});
   return counters;
 }

@@ -33,6 +33,8 @@ class Navigator {
   static constexpr std::chrono::milliseconds kPosePeriod{20};
   /// Poses of a longer stretch without an item are left out.
   static constexpr std::chrono::seconds kMaxGap{10};
+  /// The lidar's clock may be ahead of the computer's by so much.
+  static constexpr std::chrono::milliseconds kMaxAhead{200};
 
   explicit Navigator(const NavigatorParams& params);
 
@@ -47,6 +49,8 @@ class Navigator {
 
   /// Whether a motion of the odometer would be used now: with the first item of another kind.
   bool WantsOdometry() const { return time_ && params_.use_lidar_odometry; }
+  /// Whether one has come within the last 2 s.
+  bool HasOdometry() const;
   const RelativeFrame& relative_frame() const { return relative_; }
 
   /// Time of the last item.
@@ -71,7 +75,9 @@ class Navigator {
   PoseFilter filter_;
   RelativeFrame relative_;
   std::int64_t num_motions_ = 0;
+  std::optional<Utime> last_motion_;  // when it came
   std::int64_t num_bad_motions_ = 0;
+  std::int64_t num_motions_ahead_ = 0;
   std::optional<Pose> last_pose_;
   std::optional<Utime> time_;
   Utime next_pose_{};

@@ -20,6 +20,10 @@ constexpr std::chrono::seconds kHeadingMemory{3};
 // A boat that coasts may turn by more, but a greater deviation would take what stands at 50 m for anything within several metres.
 constexpr double kMostHeadingSdRad = DegToRad(3.0);
 
+// A heading that comes back is off by what the frame has turned meanwhile. What stands must not turn with it at once: the frame turns back to north
+// within a minute.
+constexpr double kTurnBackTimeS = 30.0;
+
 double Seconds(std::chrono::microseconds duration) { return static_cast<double>(duration.count()) * 1e-6; }
 
 // From forward and port to the frame's x and y, for a heading clockwise from y.
@@ -47,9 +51,9 @@ bool RelativeFrame::MayBegin(Utime time) const {
   if (!start_) return false;
   if (last_earth_) {
     const std::chrono::microseconds known_for = *last_earth_ - *first_earth_;
-    return time - *last_earth_ >= std::clamp<std::chrono::microseconds>(known_for, kBeginsWithSentences, kBeginsAfterEarth);
+    return time - *last_earth_ >= std::clamp<std::chrono::microseconds>(known_for, kWaits, kBeginsAfterEarth);
   }
-  return time - *start_ >= (has_sentence_ ? std::chrono::microseconds(kBeginsWithSentences) : std::chrono::microseconds(kBeginsSilent));
+  return time - *start_ >= (has_sentence_ || !has_motion_ ? std::chrono::microseconds(kWaits) : std::chrono::microseconds(kBeginsSilent));
 }
 
 // A little earlier, so that the speed is known when it begins.
@@ -103,7 +107,7 @@ RelativeFrame::Node RelativeFrame::NodeAt(Utime time) const {
 }
 
 void RelativeFrame::Add(const OdometryMotion& motion) {
-  has_motion_ = true;
+  NoteMotion();
   if (!motion.is_known) return;
   if (nodes_.empty()) nodes_.push_back({motion.begin});
   // Time went back: what was known of the motion is void, the place stays.
@@ -134,6 +138,8 @@ void RelativeFrame::Activate(const Pose& earth) {
   if (nodes_.empty()) nodes_.push_back({earth.time});
   const Node here = NodeAt(earth.time);
   const bool has_heading = earth.status == PoseStatus::kNoPosition;
+  has_followed_ = has_heading;
+  off_north_rad_ = 0.0;
   heading_source_ = has_heading ? earth.heading_source : HeadingSource::kNone;
   const double heading_rad = has_heading ? earth.heading_rad : 0.0;
   const Eigen::Matrix2d turned = RotationFrameVessel(heading_rad) * RotationFrameVessel(here.heading_rad).transpose();
@@ -144,13 +150,34 @@ void RelativeFrame::Activate(const Pose& earth) {
   }
 }
 
-// The boat keeps its way so far, and goes on along the other heading.
-void RelativeFrame::TurnTo(double heading_rad, double shown_rad) {
-  const double by_rad = WrapToPi(heading_rad - shown_rad);
+// Where north is known the filter tells the heading, by compass and motions. The boat keeps its way so far, and goes on along that heading.
+void RelativeFrame::FollowHeading(const Pose& earth) {
+  if (heading_source_ == HeadingSource::kNone || earth.status != PoseStatus::kNoPosition) {
+    has_followed_ = false;
+    return;
+  }
+  const double shown_rad = NodeAt(earth.time).heading_rad;
+  const bool is_by_lidar = last_known_ && earth.time - *last_known_ <= kFresh;
+  if (!has_followed_) off_north_rad_ = is_by_lidar ? WrapToPi(shown_rad - earth.heading_rad) : 0.0;
+  has_followed_ = true;
+  if (last_shown_ && earth.time > *last_shown_) off_north_rad_ *= Exp(-Seconds(earth.time - *last_shown_) / kTurnBackTimeS);
+  const double by_rad = WrapToPi(earth.heading_rad + off_north_rad_ - shown_rad);
   for (auto& node : nodes_) node.heading_rad = WrapTo2Pi(node.heading_rad + by_rad);
 }
 
+void RelativeFrame::Skip(std::chrono::microseconds duration) {
+  for (auto* from : {&start_, &first_earth_, &last_earth_}) {
+    if (*from) **from += duration;
+  }
+}
+
 Pose RelativeFrame::At(const Pose& earth, double tilt_sd_rad) {
+  const auto pose = Shown(earth, tilt_sd_rad);
+  last_shown_ = earth.time;
+  return pose;
+}
+
+Pose RelativeFrame::Shown(const Pose& earth, double tilt_sd_rad) {
   if (earth.status == PoseStatus::kOk || earth.status == PoseStatus::kCoasting) {
     if (is_active_ || !first_earth_) first_earth_ = earth.time;
     last_earth_ = earth.time;
@@ -159,13 +186,11 @@ Pose RelativeFrame::At(const Pose& earth, double tilt_sd_rad) {
     last_known_.reset();
     return earth;
   }
-  if (!has_motion_) return earth;
   if (!is_active_) {
     if (!MayBegin(earth.time)) return earth;
     Activate(earth);
   }
-  // Where north is known the filter tells the heading, by compass and motions.
-  if (heading_source_ != HeadingSource::kNone && earth.status == PoseStatus::kNoPosition) TurnTo(earth.heading_rad, NodeAt(earth.time).heading_rad);
+  FollowHeading(earth);
   const Node node = NodeAt(earth.time);
   const auto since = last_known_ ? earth.time - *last_known_ : std::chrono::microseconds::max();
   Pose pose = earth;
@@ -181,6 +206,8 @@ Pose RelativeFrame::At(const Pose& earth, double tilt_sd_rad) {
   pose.covariance.topLeftCorner<2, 2>() = node.covariance.topLeftCorner<2, 2>();
   const double turned_variance = node.covariance(2, 2) - NodeAt(earth.time - kHeadingMemory).covariance(2, 2);
   pose.covariance(8, 8) = std::clamp(turned_variance, kBeginVariance, kMostHeadingSdRad * kMostHeadingSdRad);
+  // The map turns with the slow error of a compass.
+  if (has_followed_) pose.covariance(8, 8) = std::max(pose.covariance(8, 8), earth.covariance(8, 8));
   for (const int tilt : {6, 7}) pose.covariance(tilt, tilt) = earth.has_attitude ? earth.covariance(tilt, tilt) : tilt_sd_rad * tilt_sd_rad;
   const auto set_unknown = [&pose](int number) {
     pose.covariance.row(number).setConstant(kNan);

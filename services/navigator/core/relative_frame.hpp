@@ -16,9 +16,9 @@ namespace lookout::navigator {
 /// Poses in it depend on what was added and on the poses on the earth that were shown to it, in their order.
 class RelativeFrame {
  public:
-  /// It begins so long after the start where nothing told of a place: no sentence at all, or sentences without position and heading.
+  /// It begins so long after the start where nothing told of a place: motions alone, or else.
   static constexpr std::chrono::milliseconds kBeginsSilent{500};
-  static constexpr std::chrono::seconds kBeginsWithSentences{3};
+  static constexpr std::chrono::seconds kWaits{3};
   /// And so long after the last pose on the earth, by when tracks have ended; sooner where the earth had not been known for so long.
   static constexpr std::chrono::seconds kBeginsAfterEarth{30};
   /// Without a known motion the boat goes on as it went for so long; then its own motion is not known.
@@ -26,7 +26,11 @@ class RelativeFrame {
   static constexpr std::chrono::seconds kCoasts{3};
 
   void Begin(Utime start);
+  /// Time that was jumped over, by a clock that was set or a computer that slept: it does not count as time without the earth.
+  void Skip(std::chrono::microseconds duration);
   void NoteSentence() { has_sentence_ = true; }
+  /// A motion has come, used or not.
+  void NoteMotion() { has_motion_ = true; }
   void Add(const OdometryMotion& motion);
 
   /// Whether motions would be used at this time.
@@ -34,8 +38,9 @@ class RelativeFrame {
 
   /// @param earth  the pose by all other inputs; of one that places nothing its roll, pitch, heave and heading are used
   /// @param tilt_sd_rad  of roll and pitch that are not measured
-  /// @return the same where it is placed, or no motion has come; else the pose in this frame. Its variance of heading is that of the turn in the last
-  ///         3 s. Where the own motion is not known the pose stays, and velocity and its covariance are NaN
+  /// @return the same where it is placed; else the pose in this frame. Its variance of heading is that of the turn in the last
+  ///         3 s, that of the heading where one is measured. Where the own motion is not known the pose stays, and velocity and its covariance are
+  ///         NaN
   Pose At(const Pose& earth, double tilt_sd_rad);
 
   std::int64_t num_frames() const { return num_frames_; }
@@ -50,7 +55,8 @@ class RelativeFrame {
   };
   bool MayBegin(Utime time) const;
   void Activate(const Pose& earth);
-  void TurnTo(double heading_rad, double shown_rad);
+  void FollowHeading(const Pose& earth);
+  Pose Shown(const Pose& earth, double tilt_sd_rad);
   Node NodeAt(Utime time) const;
   Node Extrapolated(Utime time) const;
   static Node Moved(const Node& from, Utime time, const Eigen::Vector2d& displacement_m, double turn_rad, const Eigen::Matrix3d& covariance);
@@ -59,11 +65,15 @@ class RelativeFrame {
   std::optional<Utime> first_earth_;  // pose on the earth since the last frame, or since the start
   std::optional<Utime> last_earth_;
   bool has_sentence_ = false;
-  bool has_motion_ = false;  // one has come, known or not
+  bool has_motion_ = false;
   bool is_active_ = false;
   std::int64_t num_frames_ = 0;
   double number_ = kNan;  // height of the datum: begin of the frame, whole milliseconds since 1970
   HeadingSource heading_source_ = HeadingSource::kNone;
+  // The last pose went by a measured heading; by how much the frame's y axis is off north then, since the heading had been away.
+  bool has_followed_ = false;
+  double off_north_rad_ = 0.0;
+  std::optional<Utime> last_shown_;  // time of the last pose
   std::deque<Node> nodes_;
   // Forward, port (m/s), turn (rad/s, clockwise) at the last node, and their covariance.
   Eigen::Vector3d rates_ = Eigen::Vector3d::Zero();

@@ -69,5 +69,15 @@ TEST_F(ArrivalsTest, BeginsWithAQueue) {
   EXPECT_LE(AddEvenly(0.1, 60.0, 0.1), 3);
 }
 
+// A sensor that was off and sends more often now must not be refused for as long as it was away.
+TEST_F(ArrivalsTest, ASensorThatComesBackFasterIsUsedSoon) {
+  for (const double interval_s : {0.5, 0.1}) {
+    arrivals_ = {};
+    AddEvenly(0.0, 60.0, 1.0);
+    AddEvenly(660.0, 676.0, interval_s);
+    EXPECT_EQ(AddEvenly(676.0, 700.0, interval_s), 0) << interval_s;
+  }
+}
+
 }  // namespace
 }  // namespace lookout::navigator

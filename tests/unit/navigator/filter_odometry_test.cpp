@@ -94,7 +94,7 @@ struct OdometryRun {
       if (has_odometry && i > 0) {
         auto motion = boat.Motion(t);
         spoil(t, motion);
-        filter.Add(motion, NoonPlus(t));
+        filter.Add(motion);
       }
       filter.AdvanceTo(NoonPlus(t));
       auto& pose = result.poses.emplace_back(filter.At(NoonPlus(t)));
@@ -340,12 +340,12 @@ TEST(LidarAid, OrderOfArrivalDoesNotMatter) {
         filter->Add(boat.FixAt(t, 0.02));
       }
     }
-    if (i > 0) in_time.Add(boat.Motion(t), NoonPlus(t));
-    if (i > 3) late.Add(boat.Motion((i - 3) * kScanS), NoonPlus(t));
+    if (i > 0) in_time.Add(boat.Motion(t));
+    if (i > 3) late.Add(boat.Motion((i - 3) * kScanS));
     in_time.At(NoonPlus(t));
     late.At(NoonPlus(t));
   }
-  for (const int i : {28, 29, 30}) late.Add(boat.Motion(i * kScanS), NoonPlus(3.0));
+  for (const int i : {28, 29, 30}) late.Add(boat.Motion(i * kScanS));
   const auto expected = in_time.At(NoonPlus(3.02));
   const auto pose = late.At(NoonPlus(3.02));
   EXPECT_EQ(pose.status, PoseStatus::kCoasting);
@@ -360,10 +360,63 @@ TEST(LidarAid, MotionsOfAnotherTimeAreRefused) {
   filter.Add(boat.FixAt(0.0, 0.02));
   filter.Add(HeadingSample(0.0, 0.0));
   filter.At(NoonPlus(0.0));
-  filter.Add(boat.Motion(1.0), NoonPlus(0.1));
-  filter.Add(boat.Motion(-60.0), NoonPlus(0.1));
+  filter.Add(boat.Motion(-60.0));
   auto counts = filter.counts();
-  EXPECT_EQ(counts["late_odometry"], 2);
+  EXPECT_EQ(counts["late_odometry"], 1);
+}
+
+// A receiver that steps each five minutes says nothing against the lidar, which did not lead the place.
+TEST(LidarAid, IsNotGivenUpForFixesThatJump) {
+  const ArcBoat boat;
+  PoseFilter filter(TestFilterParams());
+  int refused = 0;
+  for (int i = 0; i <= 9000; ++i) {
+    const double t = i * kScanS;
+    filter.Add(HeadingSample(t, 0.1 * (i % 3 - 1)));
+    if (i % 2 == 0) {
+      auto fix = boat.FixAt(t, 2.0);
+      if (std::fmod(t, 300.0) > 292.0) fix.position->longitude_deg += 45.0 / 80'600.0;
+      filter.Add(fix);
+    }
+    if (i > 0) filter.Add(boat.Motion(t));
+    filter.At(NoonPlus(t));
+    // Beside the jump it contradicts the velocity, and is told.
+    if (filter.contradicts_lidar() && std::fmod(t, 300.0) < 290.0 && std::fmod(t, 300.0) > 15.0) ++refused;
+  }
+  auto counts = filter.counts();
+  EXPECT_GT(counts["renewed_position"], 2);
+  EXPECT_EQ(refused, 0);
+}
+
+// A compass that drifts by 0.1 deg/s passes every gate, and turns the map.
+TEST(LidarAid, ACompassThatDriftsIsToldAndStated) {
+  const ArcBoat boat{3.0, 0.0};
+  for (const double drift_degps : {0.0, 0.1}) {
+    PoseFilter filter(TestFilterParams());
+    double first_told_s = kNan;
+    Pose pose;
+    for (int i = 0; i <= 3000; ++i) {
+      const double t = i * kScanS;
+      const double drift_deg = drift_degps * std::max(0.0, t - 30.0);
+      // Besides a deviation that wanders by a few degrees, as a compass's does.
+      filter.Add(HeadingSample(t, drift_deg + 2.0 * std::sin(t / 30.0)));
+      if (i % 2 == 0) filter.Add(boat.FixAt(t, 2.0));
+      if (i > 0) filter.Add(boat.Motion(t));
+      pose = filter.At(NoonPlus(t));
+      if (filter.heading_apart_rad() != 0.0 && std::isnan(first_told_s)) first_told_s = t;
+    }
+    const double error_deg = RadToDeg(WrapToPi(pose.heading_rad));
+    const double sd_deg = RadToDeg(std::sqrt(pose.covariance(8, 8)));
+    if (drift_degps == 0.0) {
+      EXPECT_TRUE(std::isnan(first_told_s));
+      EXPECT_LT(sd_deg, 3.0);
+    } else {
+      EXPECT_LT(first_told_s, 130.0);
+      EXPECT_GT(error_deg, 20.0);
+      EXPECT_LT(error_deg, 3.0 * sd_deg);
+      EXPECT_NEAR(RadToDeg(filter.heading_apart_rad()), -error_deg, 12.0) << "the compass has turned more, so the lidar less";
+    }
+  }
 }
 
 // A compass that fails while fixes go on: the turn is told by the lidar.
@@ -374,7 +427,7 @@ TEST(LidarAid, CarriesTheHeadingAloneWhereThereAreFixesAlone) {
     const double t = i * kScanS;
     if (i <= 50) filter.Add(HeadingSample(t, RadToDeg(boat.HeadingRad(t))));
     if (i % 2 == 0) filter.Add(boat.FixAt(t, 0.5));
-    if (i > 0) filter.Add(boat.Motion(t), NoonPlus(t));
+    if (i > 0) filter.Add(boat.Motion(t));
     filter.At(NoonPlus(t));
   }
   const auto pose = filter.At(NoonPlus(40.0));

@@ -58,6 +58,21 @@ TEST(NavigatorOdometry, OfALogCountsNothingWhereTheConfigLeavesItOut) {
   EXPECT_EQ(StatusAfterMotions(false), PoseStatus::kUnknown);
 }
 
+// A lidar whose clock is ahead must not lead the frame of its own either.
+TEST(NavigatorOdometry, AheadOfTheComputersClockIsNotUsed) {
+  Navigator navigator(NavigatorTestParams());
+  Pose pose;
+  for (int i = 0; i < 20; ++i) {
+    OdometryMotion motion{NoonPlus(0.1 * i + 30.0), NoonPlus(0.1 * i + 30.1), true, {0.1, 0.0}, 0.0, {}};
+    motion.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
+    const auto output = navigator.Consume({NoonPlus(0.1 * i), i, ItemKind::kSentence, kOdometerSource, ToSentence(motion)});
+    if (!output.poses.empty()) pose = output.poses.back();
+  }
+  EXPECT_EQ(pose.status, PoseStatus::kRelativeToBoat);
+  EXPECT_EQ(support::CountOf(navigator, "odometry_ahead"), 20);
+  EXPECT_TRUE(navigator.HasOdometry());
+}
+
 // The tool that looks for the lidar's mounting must not read what that mounting has turned.
 TEST(NavigatorLidarImu, CanBeLeftOut) {
   const auto num_read = [](bool uses, const char* source) {
@@ -262,7 +277,8 @@ TEST_F(NavigatorTest, DoesNotTakeAnOldSentenceThatTheLidarRepeatsForAFix) {
 
 TEST_F(NavigatorTest, IsNotAtAPlaceForASentenceThatIsRepeatedForEver) {
   for (int i = 0; i < 600; ++i) Sentence(0.1 + 0.1 * i, RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0));
-  EXPECT_EQ(navigator_.last_pose()->status, PoseStatus::kUnknown);
+  EXPECT_EQ(navigator_.last_pose()->status, PoseStatus::kRelativeToBoat);
+  EXPECT_TRUE(std::isnan(navigator_.last_pose()->latitude_deg));
   EXPECT_EQ(navigator_.filter().stopped(), "no position fix for 60 s");
 }
 

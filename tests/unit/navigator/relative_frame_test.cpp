@@ -257,19 +257,74 @@ TEST(RelativeFrame, WaitsForSentencesThatCome) {
   EXPECT_EQ(frame.At(Unknown(kStart + 3s), kTiltSdRad).status, PoseStatus::kRelativeToBoat);
 }
 
-// Without the odometer all is as before.
-TEST(RelativeFrame, NeedsTheOdometer) {
-  RelativeFrame frame;
-  frame.Begin(kStart);
-  EXPECT_EQ(frame.At(Unknown(kStart + 60s), kTiltSdRad).status, PoseStatus::kUnknown);
-}
-
 TEST(RelativeFrame, BetweenTwoMotionsThePoseLiesBetween) {
   RelativeFrame frame;
   frame.Begin(kStart);
   for (int i = 1; i <= 10; ++i) frame.Add(Straight(kStart + i * 100ms, 0.1));
   frame.At(Unknown(kStart + 600ms), kTiltSdRad);
   EXPECT_NEAR(frame.At(Unknown(kStart + 760ms), kTiltSdRad).p_map_m.y(), 0.16, 1e-9);
+}
+
+Pose OfCompass(Utime time, double heading_deg) {
+  Pose pose = Unknown(time);
+  pose.status = PoseStatus::kNoPosition;
+  pose.heading_source = HeadingSource::kHdt;
+  pose.heading_rad = WrapTo2Pi(DegToRad(heading_deg));
+  pose.covariance = PoseCovariance::Zero();
+  pose.covariance(8, 8) = DegToRad(2.0) * DegToRad(2.0);
+  return pose;
+}
+
+TEST(RelativeFrame, WithoutAnyMotionTheFrameIsThatOfTheBoat) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  EXPECT_EQ(frame.At(Unknown(kStart + 2s), kTiltSdRad).status, PoseStatus::kUnknown) << "a receiver may send once a second";
+  const auto pose = frame.At(Unknown(kStart + 3s), kTiltSdRad);
+  EXPECT_EQ(pose.status, PoseStatus::kRelativeToBoat);
+  EXPECT_EQ(pose.p_map_m.head<2>().norm(), 0.0);
+}
+
+TEST(RelativeFrame, StatesWhatACompassErrs) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  frame.NoteSentence();
+  Pose pose;
+  for (int i = 1; i <= 50; ++i) {
+    frame.Add(Straight(kStart + i * 100ms, 0.1));
+    pose = frame.At(OfCompass(kStart + i * 100ms, 10.0), kTiltSdRad);
+  }
+  EXPECT_EQ(pose.status, PoseStatus::kRelative);
+  EXPECT_NEAR(RadToDeg(std::sqrt(pose.covariance(8, 8))), 2.0, 1e-6);
+}
+
+// What stands must not swing around the boat in one pose.
+TEST(RelativeFrame, TurnsBackToNorthSlowlyWhenTheCompassComesBack) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  frame.NoteSentence();
+  double last_deg = 10.0;
+  for (int i = 1; i <= 3000; ++i) {
+    const Utime time = kStart + i * 100ms;
+    frame.Add(Straight(time, 0.1));
+    const bool has_compass = i < 100 || i > 500;
+    const auto pose = frame.At(has_compass ? OfCompass(time, i < 100 ? 10.0 : 20.0) : Unknown(time), kTiltSdRad);
+    if (i > 30) {
+      EXPECT_NEAR(RadToDeg(pose.heading_rad), last_deg, 0.1) << i;
+      last_deg = RadToDeg(pose.heading_rad);
+    }
+  }
+  EXPECT_NEAR(last_deg, 20.0, 0.1);
+}
+
+TEST(RelativeFrame, AClockThatIsSetForwardBeginsNone) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  frame.At(OnEarth(kStart + 20ms), kTiltSdRad);
+  for (int i = 2; i <= 3000; ++i) frame.At(OnEarth(kStart + i * 20ms), kTiltSdRad);
+  const Utime after = kStart + 60s + 3600s;
+  frame.Skip(3600s);
+  for (int i = 0; i < 1500; ++i) EXPECT_EQ(frame.At(Unknown(after + i * 20ms), kTiltSdRad).status, PoseStatus::kUnknown) << i;
+  EXPECT_EQ(frame.At(Unknown(after + 30s), kTiltSdRad).status, PoseStatus::kRelativeToBoat);
 }
 
 }  // namespace

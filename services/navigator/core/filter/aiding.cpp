@@ -148,7 +148,7 @@ bool IsAttitudeGivenUp(const Eigen::Vector3d& angles_rad, const Eigen::Vector3d&
   if (!fault) return false;
   ++counts.num_renewed;
   if (fault.is_led_away && state.aiding.has_gyro) RefuseImu(params.tilt_sd_rad, state);
-  RefuseOdometry(state);
+  RefuseOdometry(state.aiding.lidar_led_turn, state);
   return true;
 }
 
@@ -214,7 +214,7 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     ++counts.num_renewed;
     ForgetPlace(state);
     if (fault.is_led_away && state.aiding.is_strapdown) RefuseImu(params.tilt_sd_rad, state);
-    if (fault) RefuseOdometry(state);
+    if (fault) RefuseOdometry(state.aiding.lidar_led_way, state);
   }
   if (!is_accepted) {
     // The fix alone decides the place, and its velocity the velocity.

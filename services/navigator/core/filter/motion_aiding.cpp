@@ -17,6 +17,9 @@ constexpr double kMotionSdShare = 0.02;  // of the way
 constexpr double kMotionTurnSdRad = DegToRad(0.02);
 constexpr double kMotionTurnSdShare = 0.01;  // of the turn
 
+// The lidar's turns add up to a degree within minutes; a compass that drifts, or is drawn, goes on.
+constexpr double kApartTimeS = 300.0;
+
 // What the motion says, less what the state has done since the last scan.
 Innovation<3> MotionOf(const OdometryMotion& motion, const FilterParams& params, const State& state) {
   const auto now = PlanarPlaceOf(params, state);
@@ -75,6 +78,8 @@ bool ApplyNeeded(const Innovation<3>& motion, bool may_use_way, State& state) {
   // All of it must agree, also what is not used.
   State agreeing = state;
   if (!(may_use_way ? Correct(motion, false, agreeing) : Correct(TurnOf(motion), false, agreeing)).is_accepted) return false;
+  if (uses_way) state.aiding.lidar_led_way = agreeing.aiding.lidar_led_way = state.time;
+  if (uses_turn) state.aiding.lidar_led_turn = agreeing.aiding.lidar_led_turn = state.time;
   if (uses_turn && (uses_way || !may_use_way)) {
     state = agreeing;
   } else if (uses_way) {
@@ -85,10 +90,22 @@ bool ApplyNeeded(const Innovation<3>& motion, bool may_use_way, State& state) {
   return true;
 }
 
+// A compass that drifts takes the state with it, too slowly for any gate. While it measures the lidar's turn is not used, so the state has turned by
+// the compass since the last scan.
+void NoteTurn(const OdometryMotion& motion, double turned_more_rad, State& state) {
+  auto& aiding = state.aiding;
+  if (aiding.heading_error_model.kind != ErrorKind::kCompass) aiding.heading_apart_rad = 0.0;
+  aiding.heading_apart_rad *= Exp(-SecondsBetween(motion.begin, motion.end) / kApartTimeS);
+  if (aiding.heading_error_model.kind == ErrorKind::kCompass && GoesOn(aiding.heading(), state.time)) aiding.heading_apart_rad += turned_more_rad;
+}
+
 void ApplyMotion(const OdometryMotion& motion, const FilterParams& params, State& state, GateCounts& counts) {
   // Where the place is not known, or was begun anew since, the turn alone counts.
   const bool may_use_way = state.aiding.scan_place.has_position && state.aiding.has_position;
-  if (ApplyNeeded(MotionOf(motion, params, state), may_use_way, state)) {
+  const auto innovation = MotionOf(motion, params, state);
+  NoteTurn(motion, innovation.residual[2], state);
+  if (IsOdometryRefused(state)) return;
+  if (ApplyNeeded(innovation, may_use_way, state)) {
     state.aiding.odometry.Use(state.time);
     state.aiding.odometry_contradicts_since.reset();
     return;
@@ -103,7 +120,7 @@ void Apply(const OdometryMotion& motion, const FilterParams& params, State& stat
   const auto& from = state.aiding.scan_place;
   const bool has_begin = from.time == motion.begin && from.has_heading && state.aiding.has_heading;
   if (!motion.is_known) state.aiding.odometry_contradicts_since.reset();
-  if (motion.is_known && has_begin && !IsOdometryRefused(state)) ApplyMotion(motion, params, state, counts);
+  if (motion.is_known && has_begin) ApplyMotion(motion, params, state, counts);
   SetScanPlace(params, state);
 }
 

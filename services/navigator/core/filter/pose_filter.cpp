@@ -33,11 +33,13 @@ constexpr std::chrono::microseconds kMaxAge = 10s;
 constexpr double kUnknownSpeedMps = 3.0;
 constexpr double kUnknownAccelerationMps2 = 0.5;
 
-// The lidar's clock may be ahead of the computer's by so much.
-constexpr std::chrono::microseconds kMaxAhead = 200ms;
 // A motion of the lidar that is used counts for so long, and contradictions are told after so long.
 constexpr std::chrono::microseconds kMotionAge = 500ms;
 constexpr std::chrono::microseconds kContradiction = 1s;
+// Fixes that are not used are named for so long after the last one.
+constexpr double kNamedS = 5.0;
+// One place that comes twice, by a receiver that sends faster than it measures, is counted alone.
+constexpr double kNamedFrozenS = 3.0;
 
 double PossibleAgeS(const MeasurementTime& when) {
   if (!when.has_sentence_utc || when.is_from_sentence) return 0.0;
@@ -107,6 +109,7 @@ Pose ToPose(const State& state, const std::optional<GeodeticPlace>& datum, const
   if (state.aiding.has_heading) {
     pose.heading_rad = angles_rad[2];
     pose.heading_source = state.aiding.heading_source;
+    pose.covariance(kRowHeading, kRowHeading) += state.aiding.HeadingDoubtRad() * state.aiding.HeadingDoubtRad();
   } else {
     Unknown(kRowHeading, 1, pose.covariance);
     // Position is that of the antenna.
@@ -198,12 +201,18 @@ void PoseFilter::MoveDatum(Utime time, const GeodeticPlace& antenna) {
   }
 }
 
+// "fixes of input 'udp' repeat one place for 12 s while the boat has moved by 36 m: not used", or
 // "fixes of input 'udp' are 6120 km from the last that was believed, 3 s before: no boat gets so far; not used, unless they stay there for 57 s"
 void PoseFilter::NameDoubted(Utime time) {
-  constexpr double kNamedS = 5.0;
   doubted_.clear();
+  const auto is_recent = [time](const auto& last) { return last && std::abs(filter::SecondsBetween(last->time, time)) <= kNamedS; };
+  if (const auto& frozen = frozen_places_.last(); is_recent(frozen) && frozen->for_s >= kNamedFrozenS) {
+    doubted_ = "fixes of input '" + frozen->source + "' repeat one place for " + std::to_string(std::llround(frozen->for_s)) +
+               " s while the boat has moved by " + std::to_string(std::llround(frozen->way_m)) + " m: not used";
+    return;
+  }
   const auto& held = believed_place_.held();
-  if (!held || std::abs(filter::SecondsBetween(held->time, time)) > kNamedS) return;
+  if (!is_recent(held)) return;
   constexpr double kMetresPerKm = 1e3;
   const bool is_far = held->distance_m >= 10.0 * kMetresPerKm;
   const auto distance =
@@ -260,6 +269,10 @@ void PoseFilter::Add(const GnssFix& fix) {
     ++counts_["unusable_fix"];
     return;
   }
+  if (frozen_places_.Judge(fix)) {
+    ++counts_["frozen_fix"];
+    return;
+  }
   const double ellipsoid_height_m = fix.EllipsoidHeightM();
   const bool has_height = !std::isnan(ellipsoid_height_m);
   GeodeticPlace antenna = *fix.position;
@@ -314,7 +327,7 @@ void PoseFilter::Add(const GnssFix& fix) {
 }
 
 void PoseFilter::Add(const GroundVelocity& velocity) {
-  if (std::isnan(velocity.speed_mps)) return;
+  if (std::isnan(velocity.speed_mps) || frozen_places_.Judge(velocity)) return;
   const auto measurement = ToVelocity(velocity.speed_mps, velocity.course_rad, params_.velocity_sd_mps, false);
   if (!Insert(velocity.time, measurement)) ++counts_["late_fix"];
 }
@@ -339,8 +352,9 @@ void PoseFilter::Add(const ImuSample& sample) {
   if (!Insert(sample.time, sample)) ++counts_["late_imu"];
 }
 
-void PoseFilter::Add(const OdometryMotion& motion, Utime now) {
-  if (motion.end > now + kMaxAhead || !Insert(motion.end, motion)) ++counts_["late_odometry"];
+void PoseFilter::Add(const OdometryMotion& motion) {
+  frozen_places_.Add(motion);
+  if (!Insert(motion.end, motion)) ++counts_["late_odometry"];
 }
 
 void PoseFilter::AdvanceTo(Utime time) { Insert(time, filter::Tick{}); }
@@ -404,6 +418,7 @@ Pose PoseFilter::At(Utime time) {
   is_carried_by_lidar_ = is_carried && aiding.odometry.IsWithin(time, kMotionAge);
   const bool contradicts = aiding.odometry_contradicts_since && time - *aiding.odometry_contradicts_since >= kContradiction;
   contradicts_lidar_ = contradicts || IsOdometryRefused(state);
+  heading_apart_rad_ = aiding.has_heading && aiding.HeadingDoubtRad() > 0.0 ? aiding.heading_apart_rad : 0.0;
   NameDoubted(time);
   return ToPose(state, datum_, map_ ? &*map_ : nullptr, params_);
 }

@@ -14,6 +14,7 @@
 #include "common/core/health.hpp"
 #include "services/navigator/core/filter/aiding.hpp"
 #include "services/navigator/core/filter/believed_place.hpp"
+#include "services/navigator/core/filter/frozen_place.hpp"
 #include "services/navigator/core/filter/motion.hpp"
 #include "services/navigator/core/filter/params.hpp"
 #include "services/navigator/core/filter/state.hpp"
@@ -22,9 +23,9 @@
 namespace lookout::navigator {
 
 /// Measurements that were not used, or only against the state: README.md has the meaning of each.
-inline constexpr auto kFilterCountNames =
-    std::to_array<std::string_view>({"unusable_fix", "unreachable_fix", "new_place", "late_fix", "late_attitude", "late_imu", "unusable_imu",
-                                     "gated_fix", "gated_attitude", "renewed_position", "renewed_attitude", "late_odometry", "gated_odometry"});
+inline constexpr auto kFilterCountNames = std::to_array<std::string_view>(
+    {"unusable_fix", "frozen_fix", "unreachable_fix", "new_place", "late_fix", "late_attitude", "late_imu", "unusable_imu", "gated_fix",
+     "gated_attitude", "renewed_position", "renewed_attitude", "late_odometry", "gated_odometry"});
 using FilterCounts = Counts<kFilterCountNames>;
 
 /// An error-state Kalman filter that is run again from the instant of a late measurement: the pose of a time depends on the
@@ -47,8 +48,7 @@ class PoseFilter {
   void Add(const GroundVelocity& velocity);
   void Add(const Attitude& attitude);
   void Add(const ImuSample& sample);
-  /// @param now  time of the item that holds it: no motion ends later
-  void Add(const OdometryMotion& motion, Utime now);
+  void Add(const OdometryMotion& motion);
   /// Time has come so far: nothing else need have.
   void AdvanceTo(Utime time);
 
@@ -69,13 +69,17 @@ class PoseFilter {
   /// A datum out of config that is far from the first fix, in words (common/core/datum_check.hpp); empty = none.
   const std::string& datum_complaint() const { return datum_complaint_; }
 
-  /// Fixes that are held at the time of the last pose since no boat can have got there (believed_place.hpp), in words; empty = none.
+  /// Fixes that are not used at the time of the last pose, since no boat can have got there (believed_place.hpp) or since they repeat an old place
+  /// (frozen_place.hpp), in words; empty = none.
   const std::string& doubted() const { return doubted_; }
 
   /// At the time of the last pose position or heading, whose input has stopped, is carried on by motions of the lidar.
   bool is_carried_by_lidar() const { return is_carried_by_lidar_; }
   /// At that time motions of the lidar have contradicted the state for a second and more.
   bool contradicts_lidar() const { return contradicts_lidar_; }
+
+  /// At that time by how much a compass and the lidar's own motion have turned apart, rad; 0 while that is within what a compass errs.
+  double heading_apart_rad() const { return heading_apart_rad_; }
 
   /// Inputs that have stopped at the time of the last pose, in words: "no position fix for 3 s", ...; empty = none.
   const std::string& stopped() const { return stopped_; }
@@ -116,6 +120,7 @@ class PoseFilter {
   };
   std::optional<NextDatum> next_datum_;
   BelievedPlace believed_place_;
+  FrozenPlaces frozen_places_;
   // The last believed fix but GGA, and the place believed before it.
   struct Believed {
     std::string source;
@@ -141,6 +146,7 @@ class PoseFilter {
   bool has_had_heading_ = false;
   bool is_carried_by_lidar_ = false;
   bool contradicts_lidar_ = false;
+  double heading_apart_rad_ = 0.0;
 };
 
 }  // namespace lookout::navigator

@@ -22,15 +22,24 @@ constexpr double kUnknownLevelSdM = 1.0;
 // How long an IMU, or the lidar's motion, is not used that led the state astray.
 constexpr double kFirstRefusalS = 10.0;
 constexpr double kMaxRefusalS = 600.0;
+// Where it was used for so many times as long since then, it is refused for as long as at first.
+constexpr double kForgivenAfter = 10.0;
 // A motion that was used within this time has led the state.
 constexpr std::chrono::seconds kLedByLidar{5};
 // A boat without an IMU goes up and down by so much.
 constexpr double kUpSdMps = 0.5;
+// Two independent slow errors of a compass differ by less than this many of its deviations.
+constexpr double kMostApartInSds = 3.0;
 
 }  // namespace
 
 // Not through ToSeconds: its nanoseconds overflow after 292 years, and times from outside may be 300 years apart.
 double SecondsBetween(Utime from, Utime to) { return std::chrono::duration<double>(to - from).count(); }
+
+double AidingStatus::HeadingDoubtRad() const {
+  if (heading_error_model.kind != ErrorKind::kCompass) return 0.0;
+  return std::max(std::abs(heading_apart_rad) - kMostApartInSds * heading_error_model.sd, 0.0);
+}
 
 void UseTimes::Use(Utime time) {
   if (last && time > *last) interval_s = std::min(SecondsBetween(*last, time), kMaxIntervalS);
@@ -55,8 +64,17 @@ double State::HorizontalVarianceM2() const { return std::max(covariance(kPositio
 
 Eigen::Vector3d AntennaLever(const FilterParams& params) { return params.p_vessel_antenna_m - params.p_vessel_imu_m; }
 
+namespace {
+
+double NextRefusalS(const std::optional<Utime>& refused_until, double refusal_s, Utime time) {
+  if (!refused_until || SecondsBetween(*refused_until, time) > kForgivenAfter * refusal_s) return kFirstRefusalS;
+  return std::min(2.0 * refusal_s, kMaxRefusalS);
+}
+
+}  // namespace
+
 void RefuseImu(double tilt_sd_rad, State& state) {
-  state.aiding.imu_refusal_s = std::clamp(2.0 * state.aiding.imu_refusal_s, kFirstRefusalS, kMaxRefusalS);
+  state.aiding.imu_refusal_s = NextRefusalS(state.aiding.imu_refused_until, state.aiding.imu_refusal_s, state.time);
   state.aiding.imu_refused_until = state.time + std::chrono::microseconds(std::llround(1e6 * state.aiding.imu_refusal_s));
   state.aiding.has_gyro = state.aiding.is_strapdown = false;
   state.aiding.last_gyro_bias_radps.setZero();
@@ -72,10 +90,10 @@ void RefuseImu(double tilt_sd_rad, State& state) {
   BeginMeanForce(state);
 }
 
-void RefuseOdometry(State& state) {
+void RefuseOdometry(const std::optional<Utime>& led, State& state) {
   auto& aiding = state.aiding;
-  if (IsOdometryRefused(state) || !aiding.odometry.IsWithin(state.time, kLedByLidar)) return;
-  aiding.odometry_refusal_s = std::clamp(2.0 * aiding.odometry_refusal_s, kFirstRefusalS, kMaxRefusalS);
+  if (IsOdometryRefused(state) || !led || state.time - *led > kLedByLidar) return;
+  aiding.odometry_refusal_s = NextRefusalS(aiding.odometry_refused_until, aiding.odometry_refusal_s, state.time);
   aiding.odometry_refused_until = state.time + std::chrono::microseconds(std::llround(1e6 * aiding.odometry_refusal_s));
 }
 

@@ -146,6 +146,11 @@ struct AidingStatus {
   // Fixes or headings contradicted a state that went by the lidar: its motions are not used until then, and next time for so long.
   std::optional<Utime> odometry_refused_until;
   double odometry_refusal_s = 0.0;
+  // When a motion last corrected the way, and when the turn.
+  std::optional<Utime> lidar_led_way;
+  std::optional<Utime> lidar_led_turn;
+  // By how much a measured heading has turned less than the lidar says, clockwise; forgotten within minutes, since both err a little all the time.
+  double heading_apart_rad = 0.0;
 
   Refusals fix_refusals;
   Refusals heading_refusals;
@@ -160,6 +165,9 @@ struct AidingStatus {
   int num_forces = 0;
   Eigen::Vector3d mean_force_mps2 = Eigen::Vector3d::Zero();
   double force_variance_mps2_2 = 1.0;
+
+  /// By how much more than compass and lidar may differ they have turned apart, rad.
+  double HeadingDoubtRad() const;
 
   /// The source of the heading.
   const UseTimes& heading() const { return heading_source == HeadingSource::kCourse ? course : sensor_heading; }
@@ -183,13 +191,14 @@ Eigen::Vector3d AntennaLever(const FilterParams& params);
 /// @param tilt_sd_rad  of a boat whose tilt was not measured
 State FreshState(Utime time, double tilt_sd_rad);
 
-/// The IMU led the state astray: its effects are removed, and it is not used for a while, twice as long each time.
+/// The IMU led the state astray: its effects are removed, and it is not used for a while, twice as long where that was so not long before.
 void RefuseImu(double tilt_sd_rad, State& state);
 bool IsImuRefused(const State& state);
 
-/// The state was wrong for long though the lidar told its way: its motions are not used for a while, twice as long each time. Nothing where they were
-/// not used.
-void RefuseOdometry(State& state);
+/// The state was wrong for long though the lidar told it: its motions are not used for a while, twice as long where that was so not long before.
+///
+/// @param led  when they last corrected the wrong part of the state; nothing is refused where that is long ago
+void RefuseOdometry(const std::optional<Utime>& led, State& state);
 bool IsOdometryRefused(const State& state);
 
 /// The next specific force is the first of a new mean.

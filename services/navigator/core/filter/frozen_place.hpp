@@ -1,0 +1,69 @@
+// Whether a receiver repeats an old place while the boat moves on.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "services/navigator/core/measurement.hpp"
+#include "services/navigator/core/odometry.hpp"
+
+namespace lookout::navigator {
+
+/// A place that repeats to the last digit is that of a boat that lies still, of a receiver that holds its place at walking pace, or of a receiver
+/// that is frozen while its clock goes on. It is frozen where the boat has moved since the place first came: by the velocity that the same receiver
+/// states, or, where it states none, by the lidar. Its next place is believed again.
+///
+/// A receiver that says "at rest" is believed against the lidar: a ship that gathers way looks like a shore that moves.
+///
+/// Depends on the measurements and on their order alone.
+class FrozenPlaces {
+ public:
+  /// More than any receiver's last digit, of four decimals of a minute and more (0.2 m), and than a filtered speed adds up to at a stop.
+  static constexpr double kMostWayM = 3.0;
+  /// Slower than this a boat counts as at rest: receivers hold their place then, and their speed is noise.
+  static constexpr double kLeastSpeedMps = 0.5;
+
+  /// @return whether the place of the fix is frozen
+  bool Judge(const GnssFix& fix);
+  /// @return whether it is of a receiver whose last place was frozen
+  bool Judge(const GroundVelocity& velocity);
+  void Add(const OdometryMotion& motion);
+
+  /// The last fix that was frozen.
+  struct Frozen {
+    std::string source;
+    Utime time;
+    double for_s = 0.0;  // since its place first came
+    double way_m = 0.0;  // of the boat since then
+  };
+  const std::optional<Frozen>& last() const { return last_; }
+
+ private:
+  // One sentence type of a receiver: types differ by their digits.
+  struct Place {
+    double latitude_deg = kNan;
+    double longitude_deg = kNan;
+    Utime since;
+    Eigen::Vector2d way_m = Eigen::Vector2d::Zero();        // Receiver::way_m when it first came
+    Eigen::Vector2d lidar_way_m = Eigen::Vector2d::Zero();  // lidar_way_m_ likewise
+  };
+  struct Receiver {
+    std::map<std::string, Place, std::less<>> places;  // by sentence type
+    Eigen::Vector2d way_m = Eigen::Vector2d::Zero();   // by its velocities, east and north
+    Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
+    std::optional<Utime> velocity_time;
+    bool is_frozen = false;
+  };
+
+  static void AddVelocity(Utime time, double speed_mps, double course_rad, Receiver& receiver);
+
+  std::map<std::string, Receiver, std::less<>> receivers_;  // by source
+  // By the lidar, in axes of its own.
+  Eigen::Vector2d lidar_way_m_ = Eigen::Vector2d::Zero();
+  double lidar_heading_rad_ = 0.0;
+  std::optional<Frozen> last_;
+};
+
+}  // namespace lookout::navigator
