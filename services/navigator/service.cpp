@@ -150,13 +150,14 @@ HealthReport Service::Report() const {
     add("compass and own motion by the lidar have turned apart by " + std::to_string(std::llround(RadToDeg(std::abs(apart_rad)))) +
         " deg within minutes: the compass is disturbed, or what the lidar sees turns");
   }
+  if (navigator_.IsOdometryAhead()) add("the lidar's motions are ahead of this computer's clock, and not used");
   if (!filter.doubted().empty()) add(filter.doubted());
   if (!filter.last_fix_arrival()) add("no position fix yet");
   if (!pose || (pose->heading_source == HeadingSource::kNone && !filter.has_had_heading())) add("no heading");
   if (pose && pose->heading_source == HeadingSource::kCourse) add("heading is only the course over ground: no compass or attitude sensor");
   if (pose && pose->status == PoseStatus::kRelativeToBoat) {
-    add(navigator_.HasOdometry() ? "POSE is relative to the boat: no position, and the lidar does not tell the own motion"
-                                 : "POSE is relative to the boat: no position, and no LIDAR_ODOMETRY comes");
+    add(navigator_.HasOdometry() ? "POSE is relative to the boat: no position or no heading, and the lidar does not tell the own motion"
+                                 : "POSE is relative to the boat: no position or no heading, and no LIDAR_ODOMETRY comes");
   } else if (pose && (pose->status == PoseStatus::kRelative || pose->status == PoseStatus::kRelativeCoasting)) {
     add("POSE is relative: it began where the boat was, and its way is by the lidar");
   }

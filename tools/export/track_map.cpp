@@ -154,9 +154,10 @@ class TrackMapSink final : public Sink {
     if (!pose) return Taken::kUndecodable;
     if (!UtimeFromWire(pose->utime_us)) return Taken::kInconsistent;
     const bool has_place = pose->status == pose_t::STATUS_OK || pose->status == pose_t::STATUS_COASTING || pose->status == pose_t::STATUS_NO_HEADING;
+    // A receiver without a heading has a place, also in a frame that is not on the earth.
     const auto place = PlaceOf(pose->latitude_deg, pose->longitude_deg);
     if (has_place && !place) return Taken::kInconsistent;
-    if (!has_place) {
+    if (!has_place && (pose->status < pose_t::STATUS_RELATIVE || !place)) {
       own_place_.reset();
       own_.Break();
       return Taken::kOk;

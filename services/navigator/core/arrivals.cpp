@@ -54,8 +54,8 @@ bool Arrivals::Add(Utime arrival) {
       return true;
     }
     lateness_ += interval - usual_;
-    if (!is_queue_) queue_begin_ = arrival;
     is_queue_ = true;
+    drained_since_ = arrival;
     while_begin_ = arrival;
     lateness_at_begin_ = lateness_;
     return false;
@@ -75,7 +75,7 @@ bool Arrivals::Add(Utime arrival) {
   }
   // Rounding of the interval adds up in a long queue: it also ends where sentences come no faster than usual.
   const bool is_drained = lateness_ <= kMaxLateness / 2 && interval >= usual_ - usual_ / 4;
-  if (is_drained || is_lost || arrival - queue_begin_ > kMaxDraining) EndQueue(arrival);
+  if (is_drained || is_lost || arrival - drained_since_ > kMaxDraining) EndQueue(arrival);
   return !is_queue_;
 }
 

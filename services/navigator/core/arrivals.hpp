@@ -43,7 +43,7 @@ class Arrivals {
   std::int64_t num_learned_ = 0;
   // After a gap: how late the last one was, if it is of a queue; and how late at the begin of a while in which a queue would have become shorter.
   bool is_queue_ = false;
-  Utime queue_begin_{};
+  Utime drained_since_{};  // end of the last gap
   microseconds lateness_{0};
   microseconds gap_{0};  // the last interval, where it was a gap
   Utime while_begin_{};

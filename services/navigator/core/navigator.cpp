@@ -50,6 +50,7 @@ void Navigator::Reset() {
   interpreter_.Reset();
   last_pose_.reset();
   last_motion_.reset();
+  last_motion_ahead_.reset();
   time_.reset();
 }
 
@@ -71,6 +72,7 @@ void Navigator::OnOdometry(const Item& item) {
   relative_.NoteMotion();
   if (motion->end > item.time + kMaxAhead) {
     ++num_motions_ahead_;
+    last_motion_ahead_ = item.time;
     return;
   }
   filter_.Add(*motion);
@@ -88,7 +90,7 @@ void Navigator::OnSentence(const Item& item, NavigatorOutput& output) {
   output.attitude = reading.attitude;
 }
 
-bool Navigator::HasOdometry() const { return last_motion_ && *time_ - *last_motion_ <= std::chrono::seconds(2); }
+bool Navigator::IsRecent(const std::optional<Utime>& came) const { return came && *time_ - *came <= std::chrono::seconds(2); }
 
 std::vector<Counter> Navigator::counters() const {
   auto counters = interpreter_.counters();

@@ -33,8 +33,8 @@ class Navigator {
   static constexpr std::chrono::milliseconds kPosePeriod{20};
   /// Poses of a longer stretch without an item are left out.
   static constexpr std::chrono::seconds kMaxGap{10};
-  /// The lidar's clock may be ahead of the computer's by so much.
-  static constexpr std::chrono::milliseconds kMaxAhead{200};
+  /// The lidar's clock may be ahead of the computer's by so much, a motion that waited while the process was held up among it.
+  static constexpr std::chrono::seconds kMaxAhead{1};
 
   explicit Navigator(const NavigatorParams& params);
 
@@ -49,8 +49,9 @@ class Navigator {
 
   /// Whether a motion of the odometer would be used now: with the first item of another kind.
   bool WantsOdometry() const { return time_ && params_.use_lidar_odometry; }
-  /// Whether one has come within the last 2 s.
-  bool HasOdometry() const;
+  /// Whether one has come within the last 2 s, and whether one that was too far ahead has.
+  bool HasOdometry() const { return IsRecent(last_motion_); }
+  bool IsOdometryAhead() const { return IsRecent(last_motion_ahead_); }
   const RelativeFrame& relative_frame() const { return relative_; }
 
   /// Time of the last item.
@@ -65,6 +66,7 @@ class Navigator {
   std::vector<Counter> counters() const;
 
  private:
+  bool IsRecent(const std::optional<Utime>& came) const;
   void OnOdometry(const Item& item);
   void OnSentence(const Item& item, NavigatorOutput& output);
   void AppendPose(NavigatorOutput& output);
@@ -76,6 +78,7 @@ class Navigator {
   RelativeFrame relative_;
   std::int64_t num_motions_ = 0;
   std::optional<Utime> last_motion_;  // when it came
+  std::optional<Utime> last_motion_ahead_;
   std::int64_t num_bad_motions_ = 0;
   std::int64_t num_motions_ahead_ = 0;
   std::optional<Pose> last_pose_;

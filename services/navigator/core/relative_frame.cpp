@@ -157,8 +157,7 @@ void RelativeFrame::FollowHeading(const Pose& earth) {
     return;
   }
   const double shown_rad = NodeAt(earth.time).heading_rad;
-  const bool is_by_lidar = last_known_ && earth.time - *last_known_ <= kFresh;
-  if (!has_followed_) off_north_rad_ = is_by_lidar ? WrapToPi(shown_rad - earth.heading_rad) : 0.0;
+  if (!has_followed_) off_north_rad_ = IsByLidar(earth.time) ? WrapToPi(shown_rad - earth.heading_rad) : 0.0;
   has_followed_ = true;
   if (last_shown_ && earth.time > *last_shown_) off_north_rad_ *= Exp(-Seconds(earth.time - *last_shown_) / kTurnBackTimeS);
   const double by_rad = WrapToPi(earth.heading_rad + off_north_rad_ - shown_rad);
@@ -188,6 +187,9 @@ Pose RelativeFrame::Shown(const Pose& earth, double tilt_sd_rad) {
   }
   if (!is_active_) {
     if (!MayBegin(earth.time)) return earth;
+    Activate(earth);
+  } else if (heading_source_ == HeadingSource::kNone && earth.status == PoseStatus::kNoPosition && !IsByLidar(earth.time)) {
+    // The frame turned with the boat. One that has north stands.
     Activate(earth);
   }
   FollowHeading(earth);

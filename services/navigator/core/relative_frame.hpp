@@ -54,6 +54,7 @@ class RelativeFrame {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of x, y, heading
   };
   bool MayBegin(Utime time) const;
+  bool IsByLidar(Utime time) const { return last_known_ && time - *last_known_ <= kCoasts; }
   void Activate(const Pose& earth);
   void FollowHeading(const Pose& earth);
   Pose Shown(const Pose& earth, double tilt_sd_rad);

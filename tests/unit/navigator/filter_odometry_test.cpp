@@ -411,12 +411,34 @@ TEST(LidarAid, ACompassThatDriftsIsToldAndStated) {
       EXPECT_TRUE(std::isnan(first_told_s));
       EXPECT_LT(sd_deg, 3.0);
     } else {
-      EXPECT_LT(first_told_s, 130.0);
+      EXPECT_LT(first_told_s, 110.0);
       EXPECT_GT(error_deg, 20.0);
       EXPECT_LT(error_deg, 3.0 * sd_deg);
       EXPECT_NEAR(RadToDeg(filter.heading_apart_rad()), -error_deg, 12.0) << "the compass has turned more, so the lidar less";
     }
   }
+}
+
+TEST(LidarAid, ACompassThatIsMendedIsNotDoubtedAnyMore) {
+  const ArcBoat boat{3.0, 0.0};
+  PoseFilter filter(TestFilterParams());
+  const auto told = [&](int from, int to, bool has_motion, const std::function<double(double)>& error_deg) {
+    for (int i = from; i < to; ++i) {
+      const double t = i * kScanS;
+      filter.Add(HeadingSample(t, error_deg(t)));
+      if (i % 2 == 0) filter.Add(boat.FixAt(t, 2.0));
+      if (has_motion && i > 0) filter.Add(boat.Motion(t));
+      filter.At(NoonPlus(t));
+    }
+    return RadToDeg(filter.heading_apart_rad());
+  };
+  EXPECT_EQ(told(0, 300, true, [](double) { return 0.0; }), 0.0);
+  EXPECT_LT(told(300, 1500, true, [](double t) { return 0.2 * (t - 30.0); }), -15.0);
+  // It jumps back: that step counts, too.
+  EXPECT_EQ(told(1500, 1800, true, [](double) { return 0.0; }), 0.0);
+  // A step aside is told, and forgotten also where the lidar tells nothing any more.
+  EXPECT_LT(told(1800, 2400, true, [](double) { return 20.0; }), -10.0);
+  EXPECT_EQ(told(2400, 9000, false, [](double) { return 20.0; }), 0.0);
 }
 
 // A compass that fails while fixes go on: the turn is told by the lidar.

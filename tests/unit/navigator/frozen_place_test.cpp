@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <random>
 
 #include "tests/unit/navigator/filter_measurements.hpp"
 
@@ -61,33 +62,64 @@ TEST(FrozenPlaces, TheLidarTellsAReceiverWithoutASpeed) {
     bool is_frozen = false;
     for (int i = 0; i < 100; ++i) {
       places.Add(MotionOf(0.1 * i, moves ? 3.0 : 0.2));
-      is_frozen = places.Judge(PrintedFix(0.1 * i, 0.0, kNan, "GGA"));
+      is_frozen = places.Judge(PrintedFix(0.1 * i, 0.3 * std::min(i, 10), kNan, "GGA"));
     }
     EXPECT_EQ(is_frozen, moves);
   }
 }
 
-// In a circle the boat comes back to where it was.
-TEST(FrozenPlaces, WhereTheBoatComesBackThePlaceIsRightAgain) {
+// At anchor, with GGA alone from a receiver that holds its place: the ship that leaves an hour later must not take the fixes away.
+TEST(FrozenPlaces, AShipThatLeavesDoesNotFreezeAPlaceThatStood) {
   FrozenPlaces places;
-  bool was_frozen = false;
-  bool is_frozen = false;
-  for (int i = 0; i <= 200; ++i) {
-    auto motion = MotionOf(0.1 * i, 3.0);
-    motion.turn_rad = i == 100 ? kPi : 0.0;
-    is_frozen = places.Judge(PrintedFix(0.1 * i, 0.0, kNan, "GGA"));
-    was_frozen = was_frozen || is_frozen;
-    places.Add(motion);
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(places.Judge(PrintedFix(0.1 * i, 0.3 * i, kNan, "GGA")));
+  for (int i = 100; i < 600; ++i) {
+    places.Add(MotionOf(0.1 * i, i < 300 ? 0.0 : 3.0));
+    EXPECT_FALSE(places.Judge(PrintedFix(0.1 * i, 30.0, kNan, "GGA"))) << i;
   }
-  EXPECT_TRUE(was_frozen);
-  EXPECT_FALSE(is_frozen);
+}
+
+// Noise of the odometer adds up to no way.
+TEST(FrozenPlaces, NoiseOfTheLidarIsNoWay) {
+  FrozenPlaces places;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 6000; ++i) {
+    auto motion = MotionOf(0.05 * i, 0.0);
+    motion.displacement_m = 0.02 * Eigen::Vector2d(normal(random), normal(random));
+    places.Add(motion);
+    EXPECT_FALSE(places.Judge(PrintedFix(0.05 * i, i < 3 ? 2.0 * i : 6.0, kNan, "GGA"))) << i;
+  }
+}
+
+// A converter with two decimals of a minute: steps of 18.5 m.
+TEST(FrozenPlaces, AReceiverOfFewDigitsIsNone) {
+  for (const double speed_mps : {1.0, 6.0}) {
+    FrozenPlaces places;
+    for (int i = 0; i < 1000; ++i) {
+      auto fix = PrintedFix(1.0 * i, speed_mps * i, speed_mps);
+      fix.position->latitude_deg = std::floor(fix.position->latitude_deg * 6000.0) / 6000.0;
+      EXPECT_FALSE(places.Judge(fix)) << speed_mps << " " << i;
+    }
+  }
+}
+
+// GGA comes before the VTG of its epoch, once a second, at a fast stop beside which the receiver holds its place.
+TEST(FrozenPlaces, AFastStopIsNone) {
+  FrozenPlaces places;
+  double way_m = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const double speed_mps = std::max(0.0, i < 50 ? 2.5 : 2.5 - 2.0 * (i - 50));
+    way_m += speed_mps;
+    EXPECT_FALSE(places.Judge(PrintedFix(1.0 * i, way_m, kNan, "GGA"))) << i;
+    places.Judge(GroundVelocity{NoonPlus(1.0 * i), speed_mps, speed_mps < 0.2 ? kNan : 0.0, "udp"});
+  }
 }
 
 TEST(FrozenPlaces, AVelocityOfAFrozenReceiverIsNotUsed) {
   FrozenPlaces places;
   bool is_frozen = false;
   for (int i = 0; i < 100; ++i) {
-    places.Judge(PrintedFix(0.2 * i, 0.0, kNan, "GGA"));
+    places.Judge(PrintedFix(0.2 * i, i < 2 ? 0.6 * i : 1.2, kNan, "GGA"));
     is_frozen = places.Judge(GroundVelocity{NoonPlus(0.2 * i), 3.0, 0.0, "udp"});
   }
   EXPECT_TRUE(is_frozen);

@@ -297,6 +297,19 @@ TEST(RelativeFrame, StatesWhatACompassErrs) {
   EXPECT_NEAR(RadToDeg(std::sqrt(pose.covariance(8, 8))), 2.0, 1e-6);
 }
 
+// In open water the frame turned with the boat until then.
+TEST(RelativeFrame, ACompassThatComesLaterBeginsAFrameAlongNorth) {
+  RelativeFrame frame;
+  frame.Begin(kStart);
+  for (int i = 1; i <= 50; ++i) frame.At(Unknown(kStart + i * 100ms), kTiltSdRad);
+  EXPECT_EQ(frame.num_frames(), 1);
+  Pose pose;
+  for (int i = 51; i <= 100; ++i) pose = frame.At(OfCompass(kStart + i * 100ms, 70.0), kTiltSdRad);
+  EXPECT_EQ(frame.num_frames(), 2);
+  EXPECT_NEAR(RadToDeg(pose.heading_rad), 70.0, 1e-9);
+  EXPECT_EQ(pose.heading_source, HeadingSource::kHdt);
+}
+
 // What stands must not swing around the boat in one pose.
 TEST(RelativeFrame, TurnsBackToNorthSlowlyWhenTheCompassComesBack) {
   RelativeFrame frame;

@@ -323,7 +323,7 @@ TEST(Service, SaysWhyItIsDegraded) {
   rig.service.AdvanceTo(NoonPlus(5.0));
   rig.Drain();
   EXPECT_EQ(rig.service.Report().reason,
-            "no position fix for 5 s, no heading for 4 s, POSE is relative to the boat: no position, and no LIDAR_ODOMETRY comes");
+            "no position fix for 5 s, no heading for 4 s, POSE is relative to the boat: no position or no heading, and no LIDAR_ODOMETRY comes");
 }
 
 // A heading that is only the course over ground looked like a compass.

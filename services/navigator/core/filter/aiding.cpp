@@ -148,7 +148,6 @@ bool IsAttitudeGivenUp(const Eigen::Vector3d& angles_rad, const Eigen::Vector3d&
   if (!fault) return false;
   ++counts.num_renewed;
   if (fault.is_led_away && state.aiding.has_gyro) RefuseImu(params.tilt_sd_rad, state);
-  RefuseOdometry(state.aiding.lidar_led_turn, state);
   return true;
 }
 
@@ -176,6 +175,7 @@ void UseFixErrorModel(const ErrorModel& model, State& state) {
 void UseHeadingErrorModel(const ErrorModel& model, State& state) {
   if (model.kind != state.aiding.heading_error_model.kind) {
     state.nominal.heading_error_rad = 0.0;
+    state.aiding.heading_apart_rad = 0.0;
     ResetError<1>(kHeadingError, Eigen::Matrix<double, 1, 1>(model.sd), state);
   }
   state.aiding.heading_error_model = model;
@@ -281,7 +281,10 @@ double HeadingOf(const State& state) { return AnglesOf(HereOf(state).R_here_leve
 void BeginHeading(double heading_rad, double noise_rad, HeadingSource source, const FilterParams& params, State& state, GateCounts& counts) {
   // Meanwhile position is that of the antenna, as it was before there was a heading.
   if (state.aiding.has_position && state.aiding.has_heading) ShiftPosition(LeverLevel(params, state), state);
-  TurnClockwise(WrapToPi(heading_rad - state.nominal.heading_error_rad - HeadingOf(state)), state);
+  const double turned_rad = WrapToPi(heading_rad - state.nominal.heading_error_rad - HeadingOf(state));
+  const bool was_measured = state.aiding.has_heading && state.aiding.heading_source != HeadingSource::kCourse;
+  if (was_measured && source != HeadingSource::kCourse) state.aiding.heading_apart_rad -= turned_rad;
+  TurnClockwise(turned_rad, state);
   ResetError<1>(kRotationUp, Eigen::Matrix<double, 1, 1>(kAnyHeadingRad), state);
   UpdateHeading(heading_rad, noise_rad, true, state, counts);
   state.aiding.has_heading = true;
@@ -302,6 +305,7 @@ void ApplyHeading(double heading_rad, double sd_rad, const ErrorModel& model, do
                            counts)) {
       return;
     }
+    RefuseOdometry(state.aiding.lidar_led_turn, state);
     BeginHeading(heading_rad, noise_rad, source, params, state, counts);
   }
   state.aiding.heading_source = source;

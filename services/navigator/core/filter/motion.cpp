@@ -10,6 +10,9 @@ namespace lookout::navigator::filter {
 
 namespace {
 
+// The lidar's turns add up to a degree within minutes; a compass that drifts, or is drawn, goes on.
+constexpr double kApartTimeS = 300.0;
+
 // Longer intervals are propagated in steps: the turn of the lever arms is linear in each.
 constexpr double kMaxStepS = 0.1;
 // After so long without any item nothing of the state is valid.
@@ -109,6 +112,7 @@ void PropagateStep(const ImuSample* sample, double step_s, const Earth& earth, c
   auto& covariance = state.covariance;
   const Eigen::Matrix3d R_begin = state.nominal.R_level_vessel();
   PropagateAttitude(sample, step_s, earth, state);
+  state.aiding.heading_apart_rad *= Exp(-step_s / kApartTimeS);
   const Eigen::Matrix3d R_middle = (R_begin * RotationBy(state.nominal.angular_velocity_radps * (step_s / 2.0)).toRotationMatrix()).eval();
   const double half_step2_s2 = step_s * step_s / 2.0;
 

@@ -17,9 +17,6 @@ constexpr double kMotionSdShare = 0.02;  // of the way
 constexpr double kMotionTurnSdRad = DegToRad(0.02);
 constexpr double kMotionTurnSdShare = 0.01;  // of the turn
 
-// The lidar's turns add up to a degree within minutes; a compass that drifts, or is drawn, goes on.
-constexpr double kApartTimeS = 300.0;
-
 // What the motion says, less what the state has done since the last scan.
 Innovation<3> MotionOf(const OdometryMotion& motion, const FilterParams& params, const State& state) {
   const auto now = PlanarPlaceOf(params, state);
@@ -92,10 +89,8 @@ bool ApplyNeeded(const Innovation<3>& motion, bool may_use_way, State& state) {
 
 // A compass that drifts takes the state with it, too slowly for any gate. While it measures the lidar's turn is not used, so the state has turned by
 // the compass since the last scan.
-void NoteTurn(const OdometryMotion& motion, double turned_more_rad, State& state) {
+void NoteTurn(double turned_more_rad, State& state) {
   auto& aiding = state.aiding;
-  if (aiding.heading_error_model.kind != ErrorKind::kCompass) aiding.heading_apart_rad = 0.0;
-  aiding.heading_apart_rad *= Exp(-SecondsBetween(motion.begin, motion.end) / kApartTimeS);
   if (aiding.heading_error_model.kind == ErrorKind::kCompass && GoesOn(aiding.heading(), state.time)) aiding.heading_apart_rad += turned_more_rad;
 }
 
@@ -103,7 +98,7 @@ void ApplyMotion(const OdometryMotion& motion, const FilterParams& params, State
   // Where the place is not known, or was begun anew since, the turn alone counts.
   const bool may_use_way = state.aiding.scan_place.has_position && state.aiding.has_position;
   const auto innovation = MotionOf(motion, params, state);
-  NoteTurn(motion, innovation.residual[2], state);
+  NoteTurn(innovation.residual[2], state);
   if (IsOdometryRefused(state)) return;
   if (ApplyNeeded(innovation, may_use_way, state)) {
     state.aiding.odometry.Use(state.time);

@@ -28,8 +28,8 @@ constexpr double kForgivenAfter = 10.0;
 constexpr std::chrono::seconds kLedByLidar{5};
 // A boat without an IMU goes up and down by so much.
 constexpr double kUpSdMps = 0.5;
-// Two independent slow errors of a compass differ by less than this many of its deviations.
-constexpr double kMostApartInSds = 3.0;
+// A compass that turns around, with the greatest deviation of its card each way, and the lidar's own error: in deviations of the compass.
+constexpr double kMostApartInSds = 5.0;
 
 }  // namespace
 

@@ -149,7 +149,7 @@ struct AidingStatus {
   // When a motion last corrected the way, and when the turn.
   std::optional<Utime> lidar_led_way;
   std::optional<Utime> lidar_led_turn;
-  // By how much a measured heading has turned less than the lidar says, clockwise; forgotten within minutes, since both err a little all the time.
+  // By how much a compass has turned less than the lidar says, clockwise; forgotten within minutes, since both err a little all the time.
   double heading_apart_rad = 0.0;
 
   Refusals fix_refusals;

@@ -164,7 +164,7 @@ export const en = {
       qualities: ["No fix", "GNSS", "Differential", "PPS", "RTK fixed", "RTK float", "Dead reckoning", "Manual", "Simulator"],
       poseStates: ["Position and heading are known", "No heading", "No position", "Nothing is known", "Carried on: nothing came for a second",
         "Relative: no position on the earth. The map began where the boat was; its way is by the lidar", "Relative: the way is only carried on",
-        "Relative to the boat: no position, and the lidar does not tell the own motion"],
+        "Relative to the boat: no position or no heading, and the lidar does not tell the own motion"],
       onlyCourse: "Position is known. No compass: the heading is only the course over ground",
       headings: ["none", "compass (HDT)", "PASHR", "course over ground"],
       facts: {
