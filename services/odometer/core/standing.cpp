@@ -23,6 +23,8 @@ constexpr double kBankStepPerRange = 0.12;
 constexpr int kReach = 3;
 constexpr double kUnevenM = 0.12;
 constexpr double kPostM = 0.6;
+// Of a range: the accuracy that VLP-16, Ouster OS1 and Hesai XT state (3, 3 and 1 cm), and as much where a beam meets edges.
+constexpr double kRangeSdM = 0.03;
 
 // The ranges of a scan as a ring of columns.
 class RangeImage {
@@ -149,6 +151,8 @@ bool RangeImage::Describe(int column, int ring, TimedPoint& point) const {
   const double length = normal.norm();
   if (length <= 0.0) return false;
   point.normal = normal / length;
+  // Both ends of the surface are off.
+  point.normal_sd_rad = std::sqrt(2.0) * kRangeSdM / along.along_m.norm();
   point.shape = Shape::kSurface;
   return true;
 }
