@@ -274,5 +274,53 @@ TEST(Odometer, AWallHasItsNormalAndAPostHasBothDirections) {
   EXPECT_GT(num_posts, 2);
 }
 
+// The columns from `first` on alone, as of a sensor with a limited field of view.
+Scan WindowOf(Scan scan, std::ptrdiff_t first, std::ptrdiff_t num_columns) {
+  const auto cut = [first, num_columns](auto& values, std::ptrdiff_t per_column) {
+    values.erase(values.begin() + (first + num_columns) * per_column, values.end());
+    values.erase(values.begin(), values.begin() + first * per_column);
+  };
+  cut(scan.azimuth_rad, 1);
+  cut(scan.time_ns, 1);
+  cut(scan.range, std::ssize(scan.rings));
+  return scan;
+}
+
+// The width of a column was taken as if the columns that there are went all around.
+TEST(Odometer, APostIsAPostInANarrowFieldOfView) {
+  std::vector<Wall> walls;
+  AddBox({-8.0, 0.0}, 0.4, 0.4, Eigen::Vector2d::Zero(), walls);
+  AddBox({-9.0, 5.0}, 1.0, 1.0, Eigen::Vector2d::Zero(), walls);
+  const auto scan = MakeScan(0, walls, {});
+  for (const std::ptrdiff_t num_columns : {200, 400, 900}) {
+    int num_posts = 0;
+    for (const auto& point : StandingPoints(WindowOf(scan, 450 - num_columns / 2, num_columns), 0.1, MadeParams().standing)) {
+      EXPECT_EQ(point.shape == Shape::kPost, point.p_vessel_m.y() < 2.0) << num_columns << " columns, at " << point.p_vessel_m.transpose();
+      if (point.shape == Shape::kPost) ++num_posts;
+    }
+    EXPECT_GT(num_posts, 10) << num_columns;
+  }
+}
+
+// The rest of a wall may lie where the sensor does not look.
+TEST(Odometer, TheEdgeOfTheFieldOfViewIsNoFreeSight) {
+  const auto scan = MakeScan(0, {{{-8.0, -10.0}, {-8.0, 10.0}}}, {});
+  const auto points = StandingPoints(WindowOf(scan, 573, 200), 0.1, MadeParams().standing);
+  EXPECT_FALSE(points.empty());
+  for (const auto& point : points) EXPECT_NE(point.shape, Shape::kPost) << point.p_vessel_m.transpose();
+}
+
+// A drop at each edge, as far away: they stand alone.
+TEST(Odometer, TheEdgesOfTheFieldOfViewAreNoNeighbours) {
+  auto scan = WindowOf(MakeScan(0, {}, {}), 300, 200);
+  scan.range[10] = scan.range[199 * scan.rings.size() + 10] = 5000;
+  EXPECT_TRUE(StandingPoints(scan, 0.5, MadeParams().standing).empty());
+  // All around they are.
+  auto whole = MakeScan(0, {}, {});
+  whole.range[10] = whole.range[(kNumColumns - 1) * whole.rings.size() + 10] = 5000;
+  whole.range[16 + 10] = 5000;
+  EXPECT_FALSE(StandingPoints(whole, 0.5, MadeParams().standing).empty());
+}
+
 }  // namespace
 }  // namespace lookout::odometer
