@@ -52,7 +52,7 @@ struct MapPoint {
 struct Match {
   Eigen::Vector3d p_map_m;  // nearest point of the map
   Eigen::Matrix3d weight;   // of the difference along each direction: 1 across a surface, 0 along it, little in foliage
-  Eigen::Vector3d along;    // level, along a surface: as long as its normal is wrong, standard deviation (rad)
+  Eigen::Vector3d along;    // level, along a surface; its length is the standard deviation of the normal (rad)
 };
 
 class LocalMap {

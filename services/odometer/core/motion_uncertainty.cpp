@@ -16,7 +16,7 @@ void MotionUncertainty::Predict(double since_s, const Eigen::Matrix3d& R_map_ves
   Matrix12 transition = Matrix12::Identity();
   transition.block<3, 6>(kBegin, kBegin) << Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Identity();
   transition.block<3, 3>(kRates, kAcceleration) = since_s * Eigen::Matrix3d::Identity();
-  // The rates are those between two scans.
+  // The rates are the means between two scans: those after the acceleration make the way.
   transition.block<3, 3>(kPlace, kRates) = since_s * R_map_vessel;
   transition.block<3, 3>(kPlace, kAcceleration) = since_s * since_s * R_map_vessel;
   covariance_ = (transition * covariance_ * transition.transpose()).eval();
@@ -24,7 +24,7 @@ void MotionUncertainty::Predict(double since_s, const Eigen::Matrix3d& R_map_ves
 
 Eigen::Vector3d MotionUncertainty::Correct(const Eigen::Vector3d& correction, const Eigen::Matrix3d& place_covariance) {
   const Eigen::Matrix3d predicted = place();
-  // The others follow the place as they are correlated with it.
+  // The measurement corrects all other errors by their correlation with that of the place.
   const Eigen::Matrix<double, 12, 3> gain = predicted.ldlt().solve(covariance_.middleRows<3>(kPlace)).transpose();
   covariance_ -= gain * (predicted - place_covariance) * gain.transpose();
   covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
@@ -42,7 +42,7 @@ void MotionUncertainty::LimitRates(double speed_sd_mps, double turn_sd_radps) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(before.topLeftCorner<2, 2>());
   const Eigen::Vector2d worst = solver.eigenvectors().col(1);
   const auto factor = [](double most, double variance) { return variance > most * most ? most / std::sqrt(variance) : 1.0; };
-  // Errors are made smaller, with whatever they are correlated with.
+  // Scaling the errors, with their correlations, keeps the matrix a covariance.
   Matrix12 scale = Matrix12::Identity();
   scale.block<2, 2>(kRates, kRates) -= (1.0 - factor(speed_sd_mps, solver.eigenvalues()[1])) * worst * worst.transpose();
   scale(kRates + 2, kRates + 2) = factor(turn_sd_radps, before(2, 2));

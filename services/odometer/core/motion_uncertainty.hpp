@@ -1,40 +1,42 @@
-// What is not known of the motion, as one covariance: the place where a scan begins and ends, the rates, and an acceleration that lasts.
+// Covariance of the motion: of the places at the begin and the end of a scan, of the rates, and of an acceleration that lasts.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace lookout::odometer {
 
-/// The errors of places are east-like, north-like (m) and of the bearing (rad, counter-clockwise) along the axes of the map; those of rates and
-/// accelerations forward, port (m/s, m/s2) and of the turn (rad/s, rad/s2, counter-clockwise) along those of the vessel.
+/// Places: east-like, north-like (m), bearing (rad, counter-clockwise), along the axes of the map. Rates and accelerations: forward, port (m/s,
+/// m/s2), turn (rad/s, rad/s2, counter-clockwise), along the axes of the vessel.
 ///
-/// A boat that brakes does so for seconds. So the acceleration is one unknown number, not a new one for each scan: the deviation of a speed that no
-/// scan measures grows linearly with time. The acceleration is never estimated, only its share in the other errors is followed (Schmidt, "consider"
-/// filter; Jazwinski, Stochastic Processes and Filtering Theory, 1970, section 8.4).
+/// A boat that brakes does so for seconds. The acceleration is therefore one unknown constant, not new noise with each scan: the deviation of a speed
+/// that no scan measures grows linearly with time. The acceleration is not estimated; its correlation with the other errors is followed (a
+/// Schmidt-Kalman or "consider" filter; Jazwinski, Stochastic Processes and Filtering Theory, 1970, section 8.4).
 class MotionUncertainty {
  public:
   /// @param acceleration_sd  forward and port, m/s2; of the turn, rad/s2
   explicit MotionUncertainty(const Eigen::Vector3d& acceleration_sd) : acceleration_variance_(acceleration_sd.cwiseAbs2()) {}
 
-  /// The place is known, the rates to this.
+  /// The place has no error.
+  ///
+  /// @param rates_sd  deviations of the rates
   void Begin(const Eigen::Vector3d& rates_sd);
 
-  /// To the end of the next scan.
+  /// Goes on to the end of the next scan.
   ///
   /// @param R_map_vessel  in the middle of the motion
   void Predict(double since_s, const Eigen::Matrix3d& R_map_vessel);
 
-  /// The place at the end of the scan was measured.
+  /// Uses a measurement of the place at the end of the scan.
   ///
-  /// @param correction        place measured less place predicted
-  /// @param place_covariance  of the place now, with what was predicted
+  /// @param correction        measured place less predicted place
+  /// @param place_covariance  of the place by measurement and prediction
   /// @return the correction of the place at the begin of the motion
   Eigen::Vector3d Correct(const Eigen::Vector3d& correction, const Eigen::Matrix3d& place_covariance);
 
-  /// From here on places are meant as seen from this one: it has no error.
+  /// Measures later places from this one: it has no error from here on.
   void BeginAtPlace();
 
-  /// No rate is known worse than this: a boat goes only so fast.
+  /// Bounds the deviations of the rates, in every direction: a boat goes only so fast.
   void LimitRates(double speed_sd_mps, double turn_sd_radps);
 
   Eigen::Matrix3d place() const { return covariance_.block<3, 3>(kPlace, kPlace); }

@@ -71,24 +71,24 @@ Eigen::Matrix3d PlanarOf(const Matrix6& matrix) {
   return part;
 }
 
-// Of the place after the fit, with what was predicted: by its information, less what only the noise of normals feigns. Along a straight quay normals
-// that are wrong by degrees seem to tell the way, by as much as is expected of this noise.
+// Covariance of the place after the fit and the prediction. The noise of normals adds spurious information: along a straight quay, normals that are
+// wrong by degrees seem to tell the way. The information matrix of the fit is therefore reduced by the one that is expected of this noise.
 //
-// In the directions in which both matrices are diagonal, and the information of the fit is 1, noise has the share m. The fit divides by 1 where 1 - m
-// were right, so its error has the variance 1 / (1 - m)^2. A place is known no worse than predicted.
+// The eigenvectors make both matrices diagonal, with 1 for the fit and the share m for the noise. The fit divides its gradient by 1 in place of 1 -
+// m, so the variance of its error is 1 / (1 - m)^2. The place is never known worse than it was predicted.
 //
-// @param bent  of the place, by a scan that is bent
-Eigen::Matrix3d PlaceCovarianceOf(const Fit& fit, const Eigen::Matrix3d& predicted, const Eigen::Matrix3d& bent) {
+// @param distortion  covariance of the place by a distorted scan
+Eigen::Matrix3d PlaceCovarianceOf(const Fit& fit, const Eigen::Matrix3d& predicted, const Eigen::Matrix3d& distortion) {
   const Eigen::Matrix3d seen = PlanarOf(fit.information.ldlt().solve(Matrix6::Identity()));
   const Eigen::Matrix3d information = seen.ldlt().solve(Eigen::Matrix3d::Identity());
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(PlanarOf(fit.information_feigned), information);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(PlanarOf(fit.information_spurious), information);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d direction = solver.eigenvectors().col(i);
     const Eigen::Vector3d scaled = information * direction;
     const double rest = 1.0 - solver.eigenvalues()[i];
     const double most = 1.0 / direction.dot(predicted.ldlt().solve(direction));
-    const double variance = rest > 0.0 ? std::min(1.0 / (rest * rest) + scaled.dot(bent * scaled), most) : most;
+    const double variance = rest > 0.0 ? std::min(1.0 / (rest * rest) + scaled.dot(distortion * scaled), most) : most;
     covariance += variance * direction * direction.transpose();
   }
   return covariance;
@@ -184,7 +184,7 @@ std::vector<MapPoint> Odometer::Straightened(const std::vector<TimedPoint>& poin
 Odometer::Prediction Odometer::Predict(double since_s) {
   Prediction predicted;
   auto& expected = predicted.expected;
-  predicted.is_straight = IsDetermined();
+  predicted.are_rates_known = IsDetermined();
   const double turn_rad = rates_[2] * since_s;
   // Along the bearing in the middle of the time.
   const Eigen::Matrix3d R_middle = RotationAboutZ(BearingOf(T_map_vessel_) + 0.5 * turn_rad);
@@ -197,8 +197,8 @@ Odometer::Prediction Odometer::Predict(double since_s) {
   expected.T_map_begin.translation().head<2>() = p_m;
   expected.T_map_vessel = Planar(p_m, bearing_rad);
   uncertainty_.Predict(since_s, R_middle);
-  // A return is as old as half a scan on average.
-  if (!predicted.is_straight) predicted.bent = 0.25 * since_s * since_s * R_middle * uncertainty_.rates() * R_middle.transpose();
+  // The returns are half a scan old on average, so an error of the rates displaces the fit by half of what it makes in a scan.
+  if (!predicted.are_rates_known) predicted.distortion = 0.25 * since_s * since_s * R_middle * uncertainty_.rates() * R_middle.transpose();
   const Eigen::Matrix3d planar = uncertainty_.place();
   const Eigen::Matrix3d information = planar.ldlt().solve(Eigen::Matrix3d::Identity());
   for (int i = 0; i < 3; ++i) {
@@ -243,8 +243,8 @@ void Odometer::Follow(const Fit& fit, const Prediction& predicted, double since_
   const double end_rad = BearingOf(fit.T_map_vessel);
   const Eigen::Vector3d moved_m = fit.T_map_vessel.translation() - expected.T_map_vessel.translation();
   const Eigen::Vector3d correction(moved_m.x(), moved_m.y(), WrapToPi(end_rad - BearingOf(expected.T_map_vessel)));
-  // After scans without a fit the motion begins at a guess, which this fit corrects too.
-  const Eigen::Vector3d begin_correction = uncertainty_.Correct(correction, PlaceCovarianceOf(fit, uncertainty_.place(), predicted.bent));
+  // After scans without a fit the motion begins at an expected place, which this fit corrects too.
+  const Eigen::Vector3d begin_correction = uncertainty_.Correct(correction, PlaceCovarianceOf(fit, uncertainty_.place(), predicted.distortion));
   const Eigen::Vector2d begin_m = T_map_vessel_.translation().head<2>() + begin_correction.head<2>();
   const double begin_rad = BearingOf(T_map_vessel_) + begin_correction[2];
   const double turn_rad = WrapToPi(end_rad - begin_rad);
@@ -266,7 +266,7 @@ bool Odometer::IsDetermined() const {
   return solver.eigenvalues()[1] <= kMaxSpeedSdMps * kMaxSpeedSdMps && rates(2, 2) <= kMaxTurnSdRadps * kMaxTurnSdRadps;
 }
 
-// No fit: the boat goes on as before.
+// Without a fit the boat is expected to go on as before.
 void Odometer::LoseSight(const Scan& scan, const std::vector<MapPoint>& points, const Expected& expected) {
   tilt_rates_radps_.setZero();
   T_map_vessel_ = expected.T_map_begin;
@@ -275,8 +275,8 @@ void Odometer::LoseSight(const Scan& scan, const std::vector<MapPoint>& points, 
   AddToMap(points, {}, nullptr);
 }
 
-// Where the speed is known, the map goes on from this place, as if it had no error. Elsewhere the place in the map of before is known worse from scan
-// to scan, and what is found again there tells no motion.
+// While the speed is known, the next motion is measured from this place, which has no error by definition. While the speed is unknown, the error of
+// the place in the map grows; beyond the distance that is searched the map is of no use.
 void Odometer::KeepPlace(bool is_first, const Motion& motion) {
   // The speed, by which scans are straightened, settles.
   if (is_first) map_.Clear();
@@ -328,10 +328,10 @@ Motion Odometer::Consume(const Scan& scan) {
   num_unknown_ = 0;
   const bool is_first = num_known_ < kFirstScans;
   ++num_known_;
-  if (is_first || !predicted.is_straight || !IsDetermined()) motion.reason = Reason::kUndetermined;
+  if (is_first || !predicted.are_rates_known || !IsDetermined()) motion.reason = Reason::kUndetermined;
   KeepPlace(is_first, motion);
-  // A scan of after a loss of sight is bent by what is not known of the rates, and is not kept.
-  if (is_first || predicted.is_straight || !IsDetermined()) AddToMap(points, sample, is_first ? nullptr : &fit);
+  // After lost scans the first scan is distorted by the error of the rates: it stays out of the map.
+  if (is_first || predicted.are_rates_known || !IsDetermined()) AddToMap(points, sample, is_first ? nullptr : &fit);
   return motion;
 }
 

@@ -61,8 +61,8 @@ class Odometer {
   std::vector<MapPoint> Straightened(const std::vector<TimedPoint>& points) const;
   struct Prediction {
     Expected expected;
-    bool is_straight = false;                        // the rates are known by which the scan is straightened
-    Eigen::Matrix3d bent = Eigen::Matrix3d::Zero();  // covariance of the place by a scan that is not straight, map axes
+    bool are_rates_known = false;                          // those by which the scan is straightened
+    Eigen::Matrix3d distortion = Eigen::Matrix3d::Zero();  // covariance of the place by a distorted scan, map axes
   };
   Prediction Predict(double since_s);
   void Follow(const Fit& fit, const Prediction& predicted, double since_s, Motion& motion);

@@ -24,7 +24,7 @@ constexpr double kBankStepPerRange = 0.12;
 constexpr int kReach = 3;
 constexpr double kUnevenM = 0.12;
 constexpr double kPostM = 0.6;
-// Of a range: the accuracy that VLP-16, Ouster OS1 and Hesai XT state (3, 3 and 1 cm), and as much where a beam meets edges.
+// Deviation of a range; VLP-16 User Manual 63-9243 Rev E: accuracy +/- 3 cm.
 constexpr double kRangeSdM = 0.03;
 
 // Columns farther apart than so many times the usual step are no neighbours: the field of view ends there, or packets were lost.
@@ -145,7 +145,7 @@ bool RangeImage::IsPost(int column, int ring, double range_m) const {
       ++width;
       next += side;
     }
-    // The scan may have seen no more of it.
+    // At the edge of the field of view the rest of a wall may be out of sight.
     if (width > most_columns || !Adjoins(column, next)) return false;
     // Something nearer hides the rest.
     const double beside_m = RangeM(column + next, ring);
@@ -199,7 +199,7 @@ bool RangeImage::Describe(int column, int ring, TimedPoint& point) const {
   const double length = normal.norm();
   if (length <= 0.0) return false;
   point.normal = normal / length;
-  // Both ends of the surface are off.
+  // By the noise at both ends of the surface.
   point.normal_sd_rad = std::sqrt(2.0) * kRangeSdM / along.along_m.norm();
   point.shape = Shape::kSurface;
   return true;
