@@ -1,6 +1,8 @@
 // Deviations of places and rates, by hand.
 #include "services/odometer/core/motion_uncertainty.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -78,6 +80,22 @@ TEST(MotionUncertainty, NoRateIsKnownWorseThanTheLimit) {
   EXPECT_NEAR(Sd(uncertainty.rates(), 0), 5.0, 1e-9);
   EXPECT_NEAR(Sd(uncertainty.rates(), 1), 1.0, 1e-9);
   EXPECT_NEAR(Sd(uncertainty.rates(), 2), 0.5, 1e-9);
+}
+
+TEST(MotionUncertainty, AnHourAlongAQuayLeavesACovariance) {
+  auto uncertainty = AtRest();
+  for (int i = 0; i < 36000; ++i) {
+    uncertainty.Predict(0.1, Matrix3d::Identity());
+    // Across the quay 1 mm, the bearing to 0.1 mrad.
+    const Matrix3d information = uncertainty.place().inverse() + Matrix3d(Vector3d(0.0, 1e6, 1e8).asDiagonal());
+    uncertainty.Correct(Vector3d::Zero(), information.inverse());
+    uncertainty.LimitRates(5.0, 0.5);
+    if (uncertainty.place().topLeftCorner<2, 2>().trace() > 4.0) uncertainty.BeginAtPlace();
+  }
+  EXPECT_NEAR(Sd(uncertainty.rates(), 0), 5.0, 0.2);
+  EXPECT_LT(Sd(uncertainty.rates(), 1), 0.02);
+  EXPECT_LT(Sd(uncertainty.rates(), 2), 0.002);
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix3d>(uncertainty.rates()).eigenvalues()[0], 0.0);
 }
 
 }  // namespace
