@@ -11,6 +11,9 @@ namespace lookout::odometer {
 /// A boat that brakes does so for seconds. The acceleration is therefore one unknown constant, not new noise with each scan: the deviation of a speed
 /// that no scan measures grows linearly with time. The acceleration is not estimated; its correlation with the other errors is followed (a
 /// Schmidt-Kalman or "consider" filter; Jazwinski, Stochastic Processes and Filtering Theory, 1970, section 8.4).
+///
+/// The fit weighs its prediction as if the acceleration were new with each scan (`expected_place`), which is best for a boat that hardly accelerates.
+/// The covariance is that of this fit for a boat whose acceleration lasts.
 class MotionUncertainty {
  public:
   /// @param acceleration_sd  forward and port, m/s2; of the turn, rad/s2
@@ -29,7 +32,7 @@ class MotionUncertainty {
   /// Uses a measurement of the place at the end of the scan.
   ///
   /// @param correction        measured place less predicted place
-  /// @param place_covariance  of the place by measurement and prediction
+  /// @param place_covariance  of the place by measurement and expected_place()
   /// @return the correction of the place at the begin of the motion
   Eigen::Vector3d Correct(const Eigen::Vector3d& correction, const Eigen::Matrix3d& place_covariance);
 
@@ -39,6 +42,8 @@ class MotionUncertainty {
   /// Bounds the deviations of the rates, in every direction: a boat goes only so fast.
   void LimitRates(double speed_sd_mps, double turn_sd_radps);
 
+  /// Covariance of the predicted place with which the measurement is to be weighed.
+  const Eigen::Matrix3d& expected_place() const { return expected_place_; }
   Eigen::Matrix3d place() const { return covariance_.block<3, 3>(kPlace, kPlace); }
   Eigen::Matrix3d rates() const { return covariance_.block<3, 3>(kRates, kRates); }
 
@@ -50,9 +55,12 @@ class MotionUncertainty {
   using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
   void HoldAcceleration();
+  bool HasExactBegin() const { return covariance_.block<3, 3>(kBegin, kBegin).isZero(0.0); }
 
   Eigen::Vector3d acceleration_variance_;
   Matrix12 covariance_ = Matrix12::Zero();
+  Eigen::Matrix3d expected_rates_ = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d expected_place_ = Eigen::Matrix3d::Zero();
 };
 
 }  // namespace lookout::odometer

@@ -199,7 +199,7 @@ Odometer::Prediction Odometer::Predict(double since_s) {
   uncertainty_.Predict(since_s, R_middle);
   // The returns are half a scan old on average, so an error of the rates displaces the fit by half of what it makes in a scan.
   if (!predicted.are_rates_known) predicted.distortion = 0.25 * since_s * since_s * R_middle * uncertainty_.rates() * R_middle.transpose();
-  const Eigen::Matrix3d planar = uncertainty_.place();
+  const Eigen::Matrix3d& planar = uncertainty_.expected_place();
   const Eigen::Matrix3d information = planar.ldlt().solve(Eigen::Matrix3d::Identity());
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -244,7 +244,8 @@ void Odometer::Follow(const Fit& fit, const Prediction& predicted, double since_
   const Eigen::Vector3d moved_m = fit.T_map_vessel.translation() - expected.T_map_vessel.translation();
   const Eigen::Vector3d correction(moved_m.x(), moved_m.y(), WrapToPi(end_rad - BearingOf(expected.T_map_vessel)));
   // After scans without a fit the motion begins at an expected place, which this fit corrects too.
-  const Eigen::Vector3d begin_correction = uncertainty_.Correct(correction, PlaceCovarianceOf(fit, uncertainty_.place(), predicted.distortion));
+  const Eigen::Vector3d begin_correction =
+      uncertainty_.Correct(correction, PlaceCovarianceOf(fit, uncertainty_.expected_place(), predicted.distortion));
   const Eigen::Vector2d begin_m = T_map_vessel_.translation().head<2>() + begin_correction.head<2>();
   const double begin_rad = BearingOf(T_map_vessel_) + begin_correction[2];
   const double turn_rad = WrapToPi(end_rad - begin_rad);

@@ -36,7 +36,7 @@ TEST(MotionUncertainty, AMeasuredDirectionIsKnownAsWellAsItIsMeasured) {
   auto uncertainty = AtRest();
   for (int i = 0; i < 10; ++i) {
     uncertainty.Predict(0.1, Matrix3d::Identity());
-    Matrix3d measured = uncertainty.place();
+    Matrix3d measured = uncertainty.expected_place();
     // The north and the bearing; the east says nothing.
     measured.row(1).setZero();
     measured.col(1).setZero();
@@ -87,7 +87,7 @@ TEST(MotionUncertainty, AnHourAlongAQuayLeavesACovariance) {
   for (int i = 0; i < 36000; ++i) {
     uncertainty.Predict(0.1, Matrix3d::Identity());
     // Across the quay 1 mm, the bearing to 0.1 mrad.
-    const Matrix3d information = uncertainty.place().inverse() + Matrix3d(Vector3d(0.0, 1e6, 1e8).asDiagonal());
+    const Matrix3d information = uncertainty.expected_place().inverse() + Matrix3d(Vector3d(0.0, 1e6, 1e8).asDiagonal());
     uncertainty.Correct(Vector3d::Zero(), information.inverse());
     uncertainty.LimitRates(5.0, 0.5);
     if (uncertainty.place().topLeftCorner<2, 2>().trace() > 4.0) uncertainty.BeginAtPlace();
