@@ -12,8 +12,8 @@ namespace lookout::odometer {
 /// that no scan measures grows linearly with time. The acceleration is not estimated; its correlation with the other errors is followed (a
 /// Schmidt-Kalman or "consider" filter; Jazwinski, Stochastic Processes and Filtering Theory, 1970, section 8.4).
 ///
-/// The fit weighs its prediction as if the acceleration were new with each scan (`expected_place`), which is best for a boat that hardly accelerates.
-/// The covariance is that of this fit for a boat whose acceleration lasts.
+/// The fit weighs its prediction as if the acceleration were new with each scan (`expected_place`): a weaker prediction lets through more noise of
+/// single scans. The covariance is that of this fit for a boat whose acceleration lasts.
 class MotionUncertainty {
  public:
   /// @param acceleration_sd  forward and port, m/s2; of the turn, rad/s2
