@@ -106,7 +106,7 @@ void LocalMap::Add(const MapPoint& point) {
   for (std::size_t i = 0; i < cube.num_points; ++i) {
     if ((cube.points[i].p_m - p_m).squaredNorm() < static_cast<float>(kMinSpacingM * kMinSpacingM)) return;
   }
-  cube.points[cube.num_points++] = {p_m, point.normal.cast<float>(), point.shape};
+  cube.points[cube.num_points++] = {p_m, point.normal.cast<float>(), point.shape, static_cast<float>(point.normal_sd_rad)};
 }
 
 void LocalMap::Forget(const Eigen::Vector3d& center_m, double radius_m) {
@@ -145,7 +145,9 @@ std::optional<Match> LocalMap::Nearest(const MapPoint& point, double radius_m) c
     }
   }
   if (nearest == nullptr) return std::nullopt;
-  return Match{nearest->p_m.cast<double>(), WeightOf(nearest->normal, nearest->shape)};
+  const Eigen::Vector3d across = nearest->normal.cast<double>();
+  const Eigen::Vector3d along = double{nearest->normal_sd_rad} * Eigen::Vector3d(-across.y(), across.x(), 0.0);
+  return Match{nearest->p_m.cast<double>(), WeightOf(nearest->normal, nearest->shape), along};
 }
 
 }  // namespace lookout::odometer

@@ -45,12 +45,14 @@ struct MapPoint {
   Eigen::Vector3d p_m;
   Eigen::Vector3d normal;
   Shape shape;
+  double normal_sd_rad = 0.0;  // about the vertical
 };
 
 /// How a return is compared with the map where it lies.
 struct Match {
   Eigen::Vector3d p_map_m;  // nearest point of the map
   Eigen::Matrix3d weight;   // of the difference along each direction: 1 across a surface, 0 along it, little in foliage
+  Eigen::Vector3d along;    // level, along a surface; its length is the standard deviation of the normal (rad)
 };
 
 class LocalMap {
@@ -74,6 +76,7 @@ class LocalMap {
     Eigen::Vector3f p_m;
     Eigen::Vector3f normal;
     Shape shape = Shape::kRough;
+    float normal_sd_rad = 0.0F;
   };
   struct Cube {
     Eigen::Vector3i place;

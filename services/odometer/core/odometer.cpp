@@ -71,6 +71,29 @@ Eigen::Matrix3d PlanarOf(const Matrix6& matrix) {
   return part;
 }
 
+// Covariance of the place after the fit and the prediction. The noise of normals adds spurious information: along a straight quay, normals that are
+// wrong by degrees seem to tell the way. The information matrix of the fit is therefore reduced by the one that is expected of this noise.
+//
+// The eigenvectors make both matrices diagonal, with 1 for the fit and the share m for the noise. The fit divides its gradient by 1 in place of 1 -
+// m, so the variance of its error is 1 / (1 - m)^2. The place is never known worse than it was predicted.
+//
+// @param distortion  covariance of the place by a distorted scan
+Eigen::Matrix3d PlaceCovarianceOf(const Fit& fit, const Eigen::Matrix3d& predicted, const Eigen::Matrix3d& distortion) {
+  const Eigen::Matrix3d seen = PlanarOf(fit.information.ldlt().solve(Matrix6::Identity()));
+  const Eigen::Matrix3d information = seen.ldlt().solve(Eigen::Matrix3d::Identity());
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(PlanarOf(fit.information_spurious), information);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d direction = solver.eigenvectors().col(i);
+    const Eigen::Vector3d scaled = information * direction;
+    const double rest = 1.0 - solver.eigenvalues()[i];
+    const double most = 1.0 / direction.dot(predicted.ldlt().solve(direction));
+    const double variance = rest > 0.0 ? std::min(1.0 / (rest * rest) + scaled.dot(distortion * scaled), most) : most;
+    covariance += variance * direction * direction.transpose();
+  }
+  return covariance;
+}
+
 // Squares of the water in which points lie, and groups of squares that touch, corners too.
 struct Spread {
   std::size_t num_squares = 0;
@@ -130,7 +153,7 @@ void Odometer::Begin(const Scan& scan) {
   T_map_vessel_ = Eigen::Isometry3d::Identity();
   rates_.setZero();
   tilt_rates_radps_.setZero();
-  rates_covariance_ = Eigen::Vector3d(kUnknownSpeedSdMps, kUnknownSpeedSdMps, kUnknownTurnSdRadps).cwiseAbs2().asDiagonal();
+  uncertainty_.Begin({kUnknownSpeedSdMps, kUnknownSpeedSdMps, kUnknownTurnSdRadps});
   num_known_ = num_unknown_ = 0;
 }
 
@@ -151,16 +174,17 @@ std::vector<MapPoint> Odometer::Straightened(const std::vector<TimedPoint>& poin
     straightened.push_back({{cos * p_m.x() - sin * p_m.y() + way_m.x() + by_tilt_m.x(), sin * p_m.x() + cos * p_m.y() + way_m.y() + by_tilt_m.y(),
                              p_m.z() + by_tilt_m.z()},
                             {cos * normal.x() - sin * normal.y(), sin * normal.x() + cos * normal.y(), normal.z()},
-                            point.shape});
+                            point.shape,
+                            point.normal_sd_rad});
   }
   return straightened;
 }
 
 // Where the boat is if it goes on as it did, level.
-Expected Odometer::Predict(double since_s) {
-  const Eigen::Vector3d step(params_.acceleration_sd_mps2, params_.acceleration_sd_mps2, params_.turn_acceleration_sd_radps2);
-  rates_covariance_.diagonal() += (step * since_s).cwiseAbs2();
-  Expected expected;
+Odometer::Prediction Odometer::Predict(double since_s) {
+  Prediction predicted;
+  auto& expected = predicted.expected;
+  predicted.are_rates_known = IsDetermined();
   const double turn_rad = rates_[2] * since_s;
   // Along the bearing in the middle of the time.
   const Eigen::Matrix3d R_middle = RotationAboutZ(BearingOf(T_map_vessel_) + 0.5 * turn_rad);
@@ -172,8 +196,10 @@ Expected Odometer::Predict(double since_s) {
   expected.T_map_begin.linear() = RotationAboutZ(turn_rad) * T_map_vessel_.linear() * RotationBy(tilt_rad);
   expected.T_map_begin.translation().head<2>() = p_m;
   expected.T_map_vessel = Planar(p_m, bearing_rad);
-  const Eigen::Matrix3d R_map_vessel = RotationAboutZ(bearing_rad);
-  const Eigen::Matrix3d planar = R_map_vessel * rates_covariance_ * R_map_vessel.transpose() * (since_s * since_s);
+  uncertainty_.Predict(since_s, R_middle);
+  // The returns are half a scan old on average, so an error of the rates displaces the fit by half of what it makes in a scan.
+  if (!predicted.are_rates_known) predicted.distortion = 0.25 * since_s * since_s * R_middle * uncertainty_.rates() * R_middle.transpose();
+  const Eigen::Matrix3d& planar = uncertainty_.expected_place();
   const Eigen::Matrix3d information = planar.ldlt().solve(Eigen::Matrix3d::Identity());
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -182,9 +208,8 @@ Expected Odometer::Predict(double since_s) {
   }
   expected.information(2, 2) = 1.0 / (kHeaveSdM * kHeaveSdM);
   expected.information(3, 3) = expected.information(4, 4) = 1.0 / (kTiltSdRad * kTiltSdRad);
-  const double speed_sd_mps = std::sqrt(std::max(rates_covariance_(0, 0), rates_covariance_(1, 1)));
-  expected.search_m = std::clamp(kLeastSearchM + 3.0 * speed_sd_mps * since_s, kLeastSearchM, kMostSearchM);
-  return expected;
+  expected.search_m = std::clamp(kLeastSearchM + 3.0 * std::sqrt(std::max(planar(0, 0), planar(1, 1))), kLeastSearchM, kMostSearchM);
+  return predicted;
 }
 
 Reason Odometer::Judge(const std::vector<MapPoint>& points, const Fit& fit) const {
@@ -207,9 +232,63 @@ void Odometer::AddToMap(const std::vector<MapPoint>& points, const std::vector<s
   std::vector<bool> moves(points.size(), false);
   for (std::size_t i = 0; fit != nullptr && i < sample.size(); ++i) moves[sample[i]] = fit->is_near[i] && !fit->is_matched[i];
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!moves[i]) map_.Add({T_map_vessel_ * points[i].p_m, T_map_vessel_.linear() * points[i].normal, points[i].shape});
+    if (!moves[i]) map_.Add({T_map_vessel_ * points[i].p_m, T_map_vessel_.linear() * points[i].normal, points[i].shape, points[i].normal_sd_rad});
   }
   if (++num_scans_ % kForgetEvery == 0) map_.Forget(T_map_vessel_.translation(), kMapRadiusM);
+}
+
+// The motion of the fit, and the rates after it.
+void Odometer::Follow(const Fit& fit, const Prediction& predicted, double since_s, Motion& motion) {
+  const auto& expected = predicted.expected;
+  const double end_rad = BearingOf(fit.T_map_vessel);
+  const Eigen::Vector3d moved_m = fit.T_map_vessel.translation() - expected.T_map_vessel.translation();
+  const Eigen::Vector3d correction(moved_m.x(), moved_m.y(), WrapToPi(end_rad - BearingOf(expected.T_map_vessel)));
+  // After scans without a fit the motion begins at an expected place, which this fit corrects too.
+  const Eigen::Vector3d begin_correction =
+      uncertainty_.Correct(correction, PlaceCovarianceOf(fit, uncertainty_.expected_place(), predicted.distortion));
+  const Eigen::Vector2d begin_m = T_map_vessel_.translation().head<2>() + begin_correction.head<2>();
+  const double begin_rad = BearingOf(T_map_vessel_) + begin_correction[2];
+  const double turn_rad = WrapToPi(end_rad - begin_rad);
+  motion.displacement_m = RotationAboutZ(-begin_rad).topLeftCorner<2, 2>() * (fit.T_map_vessel.translation().head<2>() - begin_m);
+  motion.turn_rad = -turn_rad;
+  rates_.head<2>() = RotationAboutZ(-0.5 * turn_rad).topLeftCorner<2, 2>() * motion.displacement_m / since_s;
+  rates_[2] = turn_rad / since_s;
+  Eigen::Matrix3d R_begin_middle = RotationAboutZ(0.5 * turn_rad);
+  R_begin_middle(2, 2) = -1.0;  // a turn is told clockwise
+  motion.covariance = since_s * since_s * R_begin_middle * uncertainty_.rates() * R_begin_middle.transpose();
+  const Eigen::Vector3d rotation_rad = RotationVector(T_map_vessel_.linear().transpose() * fit.T_map_vessel.linear());
+  tilt_rates_radps_ = kTiltSmoothing * tilt_rates_radps_ + (1.0 - kTiltSmoothing) * rotation_rad.head<2>() / since_s;
+  T_map_vessel_ = fit.T_map_vessel;
+}
+
+bool Odometer::IsDetermined() const {
+  const Eigen::Matrix3d rates = uncertainty_.rates();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(rates.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[1] <= kMaxSpeedSdMps * kMaxSpeedSdMps && rates(2, 2) <= kMaxTurnSdRadps * kMaxTurnSdRadps;
+}
+
+// Without a fit the boat is expected to go on as before.
+void Odometer::LoseSight(const Scan& scan, const std::vector<MapPoint>& points, const Expected& expected) {
+  tilt_rates_radps_.setZero();
+  T_map_vessel_ = expected.T_map_begin;
+  if (++num_unknown_ < kMaxUnknown) return;
+  Begin(scan);
+  AddToMap(points, {}, nullptr);
+}
+
+// While the speed is known, the next motion is measured from this place, which has no error by definition. While the speed is unknown, the error of
+// the place in the map grows; beyond the distance that is searched the map is of no use.
+void Odometer::KeepPlace(bool is_first, const Motion& motion) {
+  // The speed, by which scans are straightened, settles.
+  if (is_first) map_.Clear();
+  if (is_first || motion.is_known()) {
+    uncertainty_.BeginAtPlace();
+    return;
+  }
+  uncertainty_.LimitRates(kUnknownSpeedSdMps, kUnknownTurnSdRadps);
+  if (uncertainty_.place().topLeftCorner<2, 2>().trace() < kMostSearchM * kMostSearchM) return;
+  map_.Clear();
+  uncertainty_.BeginAtPlace();
 }
 
 Motion Odometer::Consume(const Scan& scan) {
@@ -234,53 +313,26 @@ Motion Odometer::Consume(const Scan& scan) {
   sampled.reserve(sample.size());
   for (const auto i : sample) sampled.push_back(points[i]);
 
-  const auto before = T_map_vessel_;
-  const auto expected = Predict(since_s);
-  const auto fit = Register(sampled, expected, map_);
+  const auto predicted = Predict(since_s);
+  const auto fit = Register(sampled, predicted.expected, map_);
   motion.num_returns = static_cast<int>(sampled.size());
   motion.num_matched = fit.num_matched;
   motion.residual_m = fit.residual_m;
   motion.reason = Judge(sampled, fit);
   time_ = scan.end_time;
 
-  // From the map's axes to those of the bow before.
-  const double bearing_rad = BearingOf(before);
-  const Eigen::Matrix3d R_vessel_map = RotationAboutZ(-bearing_rad);
-  const Matrix6 covariance = fit.information.ldlt().solve(Matrix6::Identity());
-  motion.covariance = R_vessel_map * PlanarOf(covariance) * R_vessel_map.transpose();
-  if (motion.is_known()) {
-    const double turn_rad = WrapToPi(BearingOf(fit.T_map_vessel) - bearing_rad);
-    motion.displacement_m = (R_vessel_map * (fit.T_map_vessel.translation() - before.translation())).head<2>();
-    motion.turn_rad = -turn_rad;
-    motion.covariance.row(2) *= -1.0;
-    motion.covariance.col(2) *= -1.0;
-    const Eigen::Vector3d rotation_rad = RotationVector(before.linear().transpose() * fit.T_map_vessel.linear());
-    tilt_rates_radps_ = kTiltSmoothing * tilt_rates_radps_ + (1.0 - kTiltSmoothing) * rotation_rad.head<2>() / since_s;
-    T_map_vessel_ = fit.T_map_vessel;
-    const Eigen::Matrix2d R_middle = RotationAboutZ(-0.5 * turn_rad).topLeftCorner<2, 2>();
-    rates_.head<2>() = R_middle * motion.displacement_m / since_s;
-    rates_[2] = turn_rad / since_s;
-    const Eigen::Matrix3d R_now_map = RotationAboutZ(-BearingOf(T_map_vessel_));
-    rates_covariance_ = R_now_map * PlanarOf(covariance) * R_now_map.transpose() / (since_s * since_s);
-    rates_covariance_ = (0.5 * (rates_covariance_ + rates_covariance_.transpose())).eval();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(rates_covariance_.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
-    if (solver.eigenvalues()[1] > kMaxSpeedSdMps * kMaxSpeedSdMps || rates_covariance_(2, 2) > kMaxTurnSdRadps * kMaxTurnSdRadps) {
-      motion.reason = Reason::kUndetermined;
-    }
-  } else {
-    tilt_rates_radps_.setZero();
-    T_map_vessel_ = expected.T_map_begin;
+  if (!motion.is_known()) {
+    LoseSight(scan, points, predicted.expected);
+    return motion;
   }
-  if (motion.is_known() || motion.reason == Reason::kUndetermined) {
-    num_unknown_ = 0;
-    // The speed, by which scans are straightened, settles.
-    if (num_known_ < kFirstScans) motion.reason = Reason::kUndetermined;
-    if (num_known_++ < kFirstScans) map_.Clear();
-    AddToMap(points, sample, num_known_ <= kFirstScans ? nullptr : &fit);
-  } else if (++num_unknown_ >= kMaxUnknown) {
-    Begin(scan);
-    AddToMap(points, {}, nullptr);
-  }
+  Follow(fit, predicted, since_s, motion);
+  num_unknown_ = 0;
+  const bool is_first = num_known_ < kFirstScans;
+  ++num_known_;
+  if (is_first || !predicted.are_rates_known || !IsDetermined()) motion.reason = Reason::kUndetermined;
+  KeepPlace(is_first, motion);
+  // After lost scans the first scan is distorted by the error of the rates: it stays out of the map.
+  if (is_first || predicted.are_rates_known || !IsDetermined()) AddToMap(points, sample, is_first ? nullptr : &fit);
   return motion;
 }
 

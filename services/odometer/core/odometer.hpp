@@ -10,6 +10,7 @@
 
 #include "common/core/utime.hpp"
 #include "services/odometer/core/local_map.hpp"
+#include "services/odometer/core/motion_uncertainty.hpp"
 #include "services/odometer/core/registration.hpp"
 #include "services/odometer/core/standing.hpp"
 
@@ -20,6 +21,7 @@ enum class Reason { kNone = 0, kFirstScan = 1, kGap = 2, kFewReturns = 3, kOneTh
 
 struct OdometerParams {
   StandingParams standing;
+  // Of an acceleration that lasts.
   double acceleration_sd_mps2 = 1.0;
   double turn_acceleration_sd_radps2 = 0.3;
 };
@@ -44,7 +46,8 @@ class Odometer {
   /// Motion over a longer time than this is not looked at: scans are missing.
   static constexpr double kMaxGapS = 0.5;
 
-  explicit Odometer(const OdometerParams& params) : params_(params) {}
+  explicit Odometer(const OdometerParams& params)
+      : params_(params), uncertainty_({params.acceleration_sd_mps2, params.acceleration_sd_mps2, params.turn_acceleration_sd_radps2}) {}
 
   /// @param scan  ends after the scan before, or begins anew
   Motion Consume(const Scan& scan);
@@ -56,7 +59,16 @@ class Odometer {
 
   void Begin(const Scan& scan);
   std::vector<MapPoint> Straightened(const std::vector<TimedPoint>& points) const;
-  Expected Predict(double since_s);
+  struct Prediction {
+    Expected expected;
+    bool are_rates_known = false;                          // those by which the scan is straightened
+    Eigen::Matrix3d distortion = Eigen::Matrix3d::Zero();  // covariance of the place by a distorted scan, map axes
+  };
+  Prediction Predict(double since_s);
+  void Follow(const Fit& fit, const Prediction& predicted, double since_s, Motion& motion);
+  void KeepPlace(bool is_first, const Motion& motion);
+  void LoseSight(const Scan& scan, const std::vector<MapPoint>& points, const Expected& expected);
+  bool IsDetermined() const;
   void AddToMap(const std::vector<MapPoint>& points, const std::vector<std::size_t>& sample, const Fit* fit);
   Reason Judge(const std::vector<MapPoint>& points, const Fit& fit) const;
 
@@ -65,7 +77,7 @@ class Odometer {
   std::optional<Utime> time_;  // end of the last scan
   Eigen::Isometry3d T_map_vessel_ = Eigen::Isometry3d::Identity();
   Rates rates_ = Rates::Zero();
-  Eigen::Matrix3d rates_covariance_ = Eigen::Matrix3d::Zero();
+  MotionUncertainty uncertainty_;
   // How the boat rolls and pitches: about its x and y axes, rad/s, smoothed.
   Eigen::Vector2d tilt_rates_radps_ = Eigen::Vector2d::Zero();
   int num_known_ = 0;    // scans in a row whose motion is known

@@ -44,6 +44,7 @@ struct Normal {
 Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_vessel, double search_m, double scale_m, const LocalMap& map,
            Fit& fit) {
   Normal normal;
+  fit.information_spurious.setZero();
   fit.num_near = fit.num_matched = 0;
   double squares_m2 = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -64,6 +65,8 @@ Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_v
     const Eigen::Matrix<double, 6, 3> weighted = weight * (jacobian.transpose() * match->weight);
     normal.information += weighted * jacobian;
     normal.gradient += weighted * difference_m;
+    const Vector6 along = jacobian.transpose() * match->along;
+    fit.information_spurious += weight * along * along.transpose();
     ++fit.num_near;
     if (square_m2 > kMatchedM * kMatchedM) continue;
     fit.is_matched[i] = true;

@@ -32,8 +32,10 @@ struct Fit {
   Eigen::Isometry3d T_map_vessel = Eigen::Isometry3d::Identity();
   Matrix6 information = Matrix6::Zero();       // with what was known before
   Matrix6 information_seen = Matrix6::Zero();  // of the returns alone
-  std::vector<bool> is_near;                   // [returns] something was seen before near it
-  std::vector<bool> is_matched;                // [returns] it lies on what was seen before
+  // The part of `information` that is expected of the noise of normals: along surfaces, where they tell nothing.
+  Matrix6 information_spurious = Matrix6::Zero();
+  std::vector<bool> is_near;     // [returns] something was seen before near it
+  std::vector<bool> is_matched;  // [returns] it lies on what was seen before
   int num_near = 0;
   int num_matched = 0;
   double residual_m = 0.0;  // root mean square of those that are matched

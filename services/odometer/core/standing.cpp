@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
 #include "services/odometer/core/local_map.hpp"
 
@@ -23,8 +24,41 @@ constexpr double kBankStepPerRange = 0.12;
 constexpr int kReach = 3;
 constexpr double kUnevenM = 0.12;
 constexpr double kPostM = 0.6;
+// Deviation of a range; VLP-16 User Manual 63-9243 Rev E: accuracy +/- 3 cm.
+constexpr double kRangeSdM = 0.03;
 
-// The ranges of a scan as a ring of columns.
+// Columns farther apart than so many times the usual step are no neighbours: the field of view ends there, or packets were lost.
+constexpr double kMostSteps = 2.5;
+
+// Angles between a column and the next, the last and the first too.
+std::vector<double> StepsOf(const std::vector<double>& azimuth_rad) {
+  std::vector<double> steps_rad(azimuth_rad.size());
+  for (std::size_t i = 0; i < azimuth_rad.size(); ++i) steps_rad[i] = std::abs(WrapToPi(azimuth_rad[(i + 1) % azimuth_rad.size()] - azimuth_rad[i]));
+  return steps_rad;
+}
+
+// How many columns adjoin each one on a side (1: by rising number, -1: by falling), one after the other.
+std::vector<int> ReachesOf(const std::vector<bool>& has_next, int side) {
+  const std::size_t num_columns = has_next.size();
+  std::vector<int> reaches(num_columns);
+  int reach = 0;
+  // Twice around, since the last column may adjoin the first.
+  for (std::size_t i = 0; i < 2 * num_columns; ++i) {
+    const std::size_t column = side > 0 ? num_columns - 1 - i % num_columns : i % num_columns;
+    const bool adjoins = has_next[side > 0 ? column : (column + num_columns - 1) % num_columns];
+    reach = adjoins ? std::min(reach + 1, static_cast<int>(num_columns) - 1) : 0;
+    reaches[column] = reach;
+  }
+  return reaches;
+}
+
+double MedianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// The ranges of a scan as a ring of columns, or as several arcs of them.
 class RangeImage {
  public:
   RangeImage(const Scan& scan, const StandingParams& params)
@@ -34,17 +68,28 @@ class RangeImage {
         num_rings_(static_cast<int>(scan.rings.size())) {
     elevations_.reserve(scan.rings.size());
     for (const auto& ring : scan.rings) elevations_.push_back(SinCosOf(ring.elevation_rad));
+    const auto steps_rad = StepsOf(scan.azimuth_rad);
+    column_rad_ = MedianOf(steps_rad);
+    std::vector<bool> has_next(steps_rad.size());
+    for (std::size_t i = 0; i < steps_rad.size(); ++i) has_next[i] = steps_rad[i] <= kMostSteps * column_rad_;
+    reach_up_ = ReachesOf(has_next, 1);
+    reach_down_ = ReachesOf(has_next, -1);
   }
 
   int Column(int column) const { return column < 0 ? column + num_columns_ : column >= num_columns_ ? column - num_columns_ : column; }
+  // Whether no gap lies between.
+  bool Adjoins(int column, int offset) const {
+    const auto& reaches = offset < 0 ? reach_down_ : reach_up_;
+    return std::abs(offset) <= reaches[static_cast<std::size_t>(column)];
+  }
   // 0 = no return
   double RangeM(int column, int ring) const {
     return scan_.range[static_cast<std::size_t>(Column(column)) * static_cast<std::size_t>(num_rings_) + static_cast<std::size_t>(ring)] *
            scan_.range_unit_m;
   }
-  bool IsNear(int column, int ring, double range_m, double step_m) const {
-    if (ring < 0 || ring >= num_rings_) return false;
-    const double other_m = RangeM(column, ring);
+  bool IsNear(int column, int offset, int ring, double range_m, double step_m) const {
+    if (ring < 0 || ring >= num_rings_ || !Adjoins(column, offset)) return false;
+    const double other_m = RangeM(column + offset, ring);
     return other_m > 0.0 && std::abs(other_m - range_m) < step_m;
   }
 
@@ -61,8 +106,8 @@ class RangeImage {
   bool HasNeighbour(int column, int ring) const {
     const double range_m = RangeM(column, ring);
     const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
-    return IsNear(column + 1, ring, range_m, step_m) || IsNear(column - 1, ring, range_m, step_m) || IsNear(column, ring + 1, range_m, step_m) ||
-           IsNear(column, ring - 1, range_m, step_m);
+    return IsNear(column, 1, ring, range_m, step_m) || IsNear(column, -1, ring, range_m, step_m) || IsNear(column, 0, ring + 1, range_m, step_m) ||
+           IsNear(column, 0, ring - 1, range_m, step_m);
   }
 
   // @return false where the surroundings say nothing: a wall seen at a grazing angle looks alike everywhere
@@ -82,23 +127,28 @@ class RangeImage {
   int num_columns_;
   int num_rings_;
   std::vector<SinCos> elevations_;
+  double column_rad_ = 0.0;  // between most columns
+  // [columns] how many adjoin it on either side, by rising and by falling number
+  std::vector<int> reach_up_;
+  std::vector<int> reach_down_;
 };
 
 // Whether sight is free on both sides of something narrow.
 bool RangeImage::IsPost(int column, int ring, double range_m) const {
   const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
-  const double column_m = std::max(1e-3, range_m * 6.3 / num_columns_);
-  const int most_columns = std::min(num_columns_ / 4, static_cast<int>(kPostM / column_m) + 1);
+  const double column_m = std::max(1e-3, range_m * column_rad_);
+  const int most_columns = std::min(num_columns_, static_cast<int>(kPostM / column_m) + 1);
   int width = 1;
   for (const int side : {-1, 1}) {
-    int next = column + side;
-    while (width <= most_columns && IsNear(next, ring, range_m, step_m)) {
+    int next = side;
+    while (width <= most_columns && IsNear(column, next, ring, range_m, step_m)) {
       ++width;
       next += side;
     }
-    if (width > most_columns) return false;
+    // At the edge of the field of view the rest of a wall may be out of sight.
+    if (width > most_columns || !Adjoins(column, next)) return false;
     // Something nearer hides the rest.
-    const double beside_m = RangeM(next, ring);
+    const double beside_m = RangeM(column + next, ring);
     if (beside_m > 0.0 && beside_m < range_m) return false;
   }
   return true;
@@ -108,8 +158,8 @@ bool RangeImage::IsPost(int column, int ring, double range_m) const {
 RangeImage::Along RangeImage::AlongRing(int column, int ring, const Vector3d& p_m, double range_m) const {
   const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
   int reach = 0;
-  while (reach < kReach && IsNear(column + reach + 1, ring, range_m, step_m * (reach + 1)) &&
-         IsNear(column - reach - 1, ring, range_m, step_m * (reach + 1))) {
+  while (reach < kReach && IsNear(column, reach + 1, ring, range_m, step_m * (reach + 1)) &&
+         IsNear(column, -reach - 1, ring, range_m, step_m * (reach + 1))) {
     ++reach;
   }
   if (reach > 0) {
@@ -121,7 +171,7 @@ RangeImage::Along RangeImage::AlongRing(int column, int ring, const Vector3d& p_
   }
   // The end of a surface: one side.
   for (const int side : {-1, 1}) {
-    if (IsNear(column + 2 * side, ring, range_m, 2.0 * step_m) && IsNear(column + side, ring, range_m, step_m)) {
+    if (IsNear(column, 2 * side, ring, range_m, 2.0 * step_m) && IsNear(column, side, ring, range_m, step_m)) {
       return {PointAt(column + 2 * side, ring) - p_m, false};
     }
   }
@@ -131,8 +181,8 @@ RangeImage::Along RangeImage::AlongRing(int column, int ring, const Vector3d& p_
 // Upwards along the surface; straight up where no other ring met it.
 Vector3d RangeImage::AcrossRings(int column, int ring, const Vector3d& p_m, double range_m) const {
   const double step_m = kSurfaceStepM + kBankStepPerRange * range_m;
-  const bool has_upper = IsNear(column, ring + 1, range_m, step_m);
-  const bool has_lower = IsNear(column, ring - 1, range_m, step_m);
+  const bool has_upper = IsNear(column, 0, ring + 1, range_m, step_m);
+  const bool has_lower = IsNear(column, 0, ring - 1, range_m, step_m);
   if (!has_upper && !has_lower) return Vector3d::UnitZ();
   return (has_upper ? PointAt(column, ring + 1) : p_m) - (has_lower ? PointAt(column, ring - 1) : p_m);
 }
@@ -149,6 +199,8 @@ bool RangeImage::Describe(int column, int ring, TimedPoint& point) const {
   const double length = normal.norm();
   if (length <= 0.0) return false;
   point.normal = normal / length;
+  // By the noise at both ends of the surface.
+  point.normal_sd_rad = std::sqrt(2.0) * kRangeSdM / along.along_m.norm();
   point.shape = Shape::kSurface;
   return true;
 }

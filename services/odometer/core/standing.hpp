@@ -51,7 +51,8 @@ struct TimedPoint {
   Eigen::Vector3d p_vessel_m;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // vessel frame; of a surface: across it, of either sign
   Shape shape = Shape::kRough;
-  double before_end_s = 0.0;  // its shot is so long before the last shot of the scan
+  double normal_sd_rad = 0.0;  // of a surface: of the normal about the vertical, by the noise of ranges
+  double before_end_s = 0.0;   // its shot is so long before the last shot of the scan
 };
 
 /// One return of each cube of `sample_m`, the first by column, then ring. A return counts where a neighbouring shot met the same surface: drops stand

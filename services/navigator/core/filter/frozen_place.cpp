@@ -29,7 +29,7 @@ double FrozenPlaces::Place::StepM() const {
   if (std::isnan(latitude_step_deg) && std::isnan(longitude_step_deg)) return kUnknownStepM;
   // Of a way along a parallel only the longitude's step is known: a digit is a digit.
   const double degrees = std::isnan(latitude_step_deg) ? longitude_step_deg : latitude_step_deg;
-  return kMetresPerDeg * std::hypot(degrees, std::isnan(longitude_step_deg) ? degrees : longitude_step_deg);
+  return kMetresPerDeg * Hypot(degrees, std::isnan(longitude_step_deg) ? degrees : longitude_step_deg);
 }
 
 Eigen::Vector2d FrozenPlaces::Receiver::WayAt(Utime time) const {
