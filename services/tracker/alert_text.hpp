@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "common/core/cover_watch.hpp"
 #include "services/tracker/core/alerts.hpp"
 #include "services/tracker/core/tracker.hpp"
 #include "services/tracker/core/zone_sight.hpp"
@@ -24,5 +25,9 @@ std::string SummaryOf(std::span<const Alert> alerts);
 /// Three parts are named, and how many more there are.
 /// @param parts  one at least
 std::string TextOf(std::span<const UnseenPart> parts, bool is_whole);
+
+/// "no look-out: 150 to 210 deg (something nearer than 1 m covers the lidar)"
+/// @param parts  one at least
+std::string TextOf(std::span<const CoveredPart> parts);
 
 }  // namespace lookout::tracker
