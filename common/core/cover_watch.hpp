@@ -42,6 +42,7 @@ class CoverWatch {
   static constexpr std::size_t kNumSectors = 72;
   static constexpr std::size_t kLeastSectors = 6;
   static constexpr double kNearM = 1.0;
+  static constexpr float kAtLidarM = 0.01F;  // no lidar measures so near
   /// Without a return, where nothing else tells, until it is said; and of scans with returns, until that is taken back.
   static constexpr double kNothingS = 30.0;
   static constexpr double kSomethingS = 5.0;
@@ -58,6 +59,9 @@ class CoverWatch {
   /// Of the scan that ended last.
   /// @param azimuth_rad  of a beam, offset included; from minus a turn on
   bool Covers(double azimuth_rad) const { return sectors_[IndexOf(azimuth_rad)].cover != Cover::kNo; }
+  /// Where a beam of that scan ends: one that shows nothing in a covered sector ends at the lidar, and nobody knows what is behind.
+  /// @param range_m  0 = no return
+  float EndOf(double azimuth_rad, float range_m) const { return range_m <= 0.0F && Covers(azimuth_rad) ? kAtLidarM : range_m; }
   bool covers_any() const { return covers_any_; }
   /// Whether a sector is covered that looked before, in this run: what was seen there may still be there.
   bool covers_anew() const { return covers_anew_; }

@@ -297,7 +297,6 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
 
 // Beams of a covered sector that show nothing end at the lidar: nobody knows what is behind.
 void Service::WatchForCovers(ScanInput& input) {
-  constexpr float kAtLidarM = 0.01F;
   if (!input.sweep) return;
   auto& sweep = *input.sweep;
   auto& cover = memory_->cover;
@@ -312,7 +311,7 @@ void Service::WatchForCovers(ScanInput& input) {
   for (std::size_t cell = 0; cell < sweep.range_m.size(); ++cell) {
     const double azimuth_rad =
         static_cast<double>(sweep.azimuth_rad[cell / num_rings]) + static_cast<double>(sweep.azimuth_offset_rad[cell % num_rings]);
-    if (sweep.range_m[cell] <= 0.0F && cover.Covers(azimuth_rad)) sweep.range_m[cell] = kAtLidarM;
+    sweep.range_m[cell] = cover.EndOf(azimuth_rad, sweep.range_m[cell]);
   }
 }
 
