@@ -128,11 +128,7 @@ std::string NameOf(const Alert& alert) {
 
 std::string TextOf(const Alert& alert) {
   if (alert.thing == kUnseenBySecond) return alert.Holds() ? "no look-out by the second lidar" : "look-out by the second lidar again";
-  if (alert.thing == kSeesNothing) {
-    return alert.Holds()
-               ? "perhaps no look-out: the lidar has seen nothing at all for 30 s (lasers off, window covered, or flat water and nothing near)"
-               : "the lidar sees something again";
-  }
+  if (alert.thing == kSeesNothing) return alert.Holds() ? std::string(kSeesNothingText) : "the lidar sees something again";
   if (alert.cause == AlertCause::kWatch) return "no look-out";
   if (!alert.Holds()) return EndText(alert);
   const auto who = NameOf(alert);

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "common/core/cover_watch.hpp"
 #include "services/tracker/core/alerts.hpp"
@@ -10,6 +11,10 @@
 #include "services/tracker/core/zone_sight.hpp"
 
 namespace lookout::tracker {
+
+/// Where no return came for CoverWatch::kNothingS.
+inline constexpr std::string_view kSeesNothingText =
+    "perhaps no look-out: the lidar has seen nothing at all for 30 s (lasers off, window covered, or flat water and nothing near)";
 
 /// Short: "boat 17", "land", "obstacle"; nothing where nobody looks.
 std::string NameOf(const Alert& alert);

@@ -423,8 +423,7 @@ HealthReport Service::Report() const {
   if (const auto complaint = watch_.Complaint(); !complaint.empty()) report.Degrade("no look-out: " + complaint);
   if (memory_ && memory_->is_second_silent) report.Degrade("no look-out by the second lidar");
   if (memory_ && memory_->cover.num_lasting() > 0) report.Degrade(memory_->cover_text);
-  if (memory_ && memory_->cover.sees_nothing())
-    report.Degrade("the lidar has seen nothing at all for 30 s: lasers off, window covered, or flat water");
+  if (memory_ && memory_->cover.sees_nothing()) report.Degrade(std::string(kSeesNothingText));
   if (memory_ && !memory_->zone_sight.parts().empty()) report.Degrade(memory_->zone_text);
   if (!is_placed_) report.Degrade("no position or heading: what is seen is not tracked");
   if (const auto text = obstacles_watch_.Complaint(); !text.empty()) report.Degrade(text);

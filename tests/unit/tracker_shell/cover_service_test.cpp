@@ -114,7 +114,8 @@ TEST_F(TrackerServiceCover, SaysWhichSectorIsCoveredAndKeepsItsTrack) {
   ASSERT_NE(alert, nullptr);
   EXPECT_EQ(alert->level, alert_t::LEVEL_CAUTION);
   EXPECT_NEAR(RadToDeg(alert->bearing_rad), 90.0, 1.0);
-  EXPECT_NE(Told("no look-out in part of the guard zone: 70 to 110 deg (the own boat or something at the lidar hides it)"), nullptr);
+  EXPECT_NE(Told("no look-out in part of the guard zone: 70 to 110 deg (the own boat or something at the lidar hides it)"), nullptr)
+      << alerts_.back().alerts.back().text;
 }
 
 // Acknowledged once, it is quiet; more of it is told anew.
