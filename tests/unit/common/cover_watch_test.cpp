@@ -2,6 +2,7 @@
 #include "common/core/cover_watch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
 #include <string>
@@ -32,7 +33,7 @@ class CoverWatchTest : public ::testing::Test {
  protected:
   void Scans(double duration_s, const World& world, CoverWatch* watch = nullptr) {
     if (watch == nullptr) watch = &watch_;
-    for (int i = 0; i < static_cast<int>(10.0 * duration_s + 0.5); ++i) {
+    for (int i = 0; i < std::lround(10.0 * duration_s); ++i) {
       time_ += std::chrono::milliseconds(100);
       watch->Begin();
       for (int degree = 0; degree < kNumColumns; ++degree) {

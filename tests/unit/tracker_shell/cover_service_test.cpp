@@ -1,5 +1,6 @@
 // What the tracker says of a lidar that is covered or dark, and what becomes of the tracks: ALERTS, TRACKS and HEALTH.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
 #include <string>
@@ -34,7 +35,7 @@ class TrackerServiceCover : public support::BusTest {
   using Ranges = std::function<double(double azimuth_deg)>;  // of both rings; 0 = no return
 
   void Scans(double duration_s, const Ranges& range_m, bool has_boat = false) {
-    for (int i = 0; i < static_cast<int>(10.0 * duration_s + 0.5); ++i, ++number_) {
+    for (int i = 0; i < std::lround(10.0 * duration_s); ++i, ++number_) {
       const auto offset_us = test::kScanUs * number_;
       for (int k = number_ == 0 ? 0 : 1; k <= 5; ++k) Send(bus::kPose, test::MakePose(offset_us + 20'000 * k, 5 * number_ + k));
       auto sweep = test::MakeSweep(offset_us, number_);
