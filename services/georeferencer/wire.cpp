@@ -133,6 +133,7 @@ std::variant<SegmentPart, Refusal> ToSegmentPart(const segments_t& message, int 
   part.head.part_index = message.part_index;
   part.head.num_parts = message.num_parts;
   part.head.num_scan_segments = message.num_turn_segments;
+  part.num_returns = std::ranges::count_if(message.label, [](std::int16_t label) { return label != 0; });
   for (const auto& segment : message.segments) part.segments.push_back(ToSegment(segment, part.head.time));
   return part;
 }

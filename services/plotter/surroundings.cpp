@@ -98,7 +98,10 @@ const std::vector<Message>* Surroundings::Whole<Message>::Find(std::int64_t utim
 
 Surroundings::Surroundings(const SurroundingsParams& params)
     : params_(params), sector_sight_(PlacesOf(params.lidars), params.own_vessel_box_m, params.reach_m) {
-  for (const auto& lidar : params.lidars) lidars_.push_back({.params = lidar, .scans = {}, .labels = {}, .sight = std::nullopt});
+  for (const auto& lidar : params.lidars) {
+    const CoverParams cover{lidar.T_vessel_lidar, lidar.min_range_m, lidar.field_of_view, lidar.own_vessel_box_m};
+    lidars_.push_back({.params = lidar, .scans = {}, .labels = {}, .cover = CoverWatch(cover), .sight = std::nullopt});
+  }
 }
 
 void Surroundings::OnScan(std::size_t lidar, const lidar_scan_t& message) {
@@ -185,6 +188,9 @@ bool Surroundings::AddPart(Lidar& lidar, const lidar_scan_t& scan, const segment
     const Eigen::Vector2d shift_m = to_now.turn * lidar.params.T_vessel_lidar.translation() + to_now.shift_m;
     const auto azimuth_rad = static_cast<double>(scan.azimuth_rad[column]);
     NearestRanges(scan, column, range_m);
+    for (std::size_t ring = 0; ring < num_rings; ++ring) {
+      range_m[ring] = lidar.cover.EndOf(azimuth_rad + static_cast<double>(scan.azimuth_offset_rad[ring]), range_m[ring]);
+    }
     lidar.sight->Add({azimuth_rad, step_rad, to_now.turned_rad, scan.azimuth_offset_rad, range_m});
     for (std::size_t ring = 0; ring < num_rings; ++ring) {
       for (std::size_t k = 0; k < num_returns; ++k, ++cell) {
@@ -202,6 +208,18 @@ bool Surroundings::AddPart(Lidar& lidar, const lidar_scan_t& scan, const segment
   return is_known;
 }
 
+void Surroundings::WatchForCovers(Lidar& lidar, const std::vector<lidar_scan_t>& scan) {
+  std::vector<float> range_m(static_cast<std::size_t>(scan.front().num_rings));
+  lidar.cover.Begin();
+  for (const auto& part : scan) {
+    for (std::size_t column = 0; column < static_cast<std::size_t>(part.num_columns); ++column) {
+      NearestRanges(part, column, range_m);
+      lidar.cover.AddColumn(static_cast<double>(part.azimuth_rad[column]), part.azimuth_offset_rad, part.elevation_rad, range_m);
+    }
+  }
+  lidar.cover.End(Utime(microseconds(scan.front().end_utime_us)));
+}
+
 bool Surroundings::AddReturns(Lidar& lidar, const Found& found, const std::vector<bool>& is_taken, const Pose* now, Look& look) {
   const auto& scan = *found.scan;
   const auto& labels = *found.labels;
@@ -214,6 +232,7 @@ bool Surroundings::AddReturns(Lidar& lidar, const Found& found, const std::vecto
   const auto& elevation_rad = scan.front().elevation_rad;
   if (!lidar.sight || !lidar.sight->IsFor(elevation_rad)) lidar.sight.emplace(lidar.params, elevation_rad);
   lidar.sight->Begin();
+  WatchForCovers(lidar, scan);
   bool is_known = true;
   for (std::size_t i = 0; i < scan.size(); ++i) is_known = AddPart(lidar, scan[i], labels[i], is_taken, now, look) && is_known;
   if (!is_known) ++counts_["looks_between_poses"];

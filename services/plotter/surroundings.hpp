@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/core/cover_watch.hpp"
 #include "common/core/health.hpp"
 #include "common/core/pose.hpp"
 #include "common/messages/checks.hpp"
@@ -56,6 +57,7 @@ class Surroundings {
     LidarSightParams params;
     Whole<lidar_scan_t> scans;
     Whole<segments_t> labels;
+    CoverWatch cover;
     std::optional<LidarSight> sight;
   };
   struct Found {
@@ -74,6 +76,7 @@ class Surroundings {
   Found SecondOf(const tracks_t& tracks) const;
   std::vector<bool> TakenSegments(const std::vector<segments_t>& labels, std::span<const tracks_t> tracks) const;
   ToNow ToNowFrom(const Pose* now, Utime time) const;
+  void WatchForCovers(Lidar& lidar, const std::vector<lidar_scan_t>& scan);
   bool AddReturns(Lidar& lidar, const Found& found, const std::vector<bool>& is_taken, const Pose* now, Look& look);
   /// @return whether the own motion within it is known
   bool AddPart(Lidar& lidar, const lidar_scan_t& scan, const segments_t& labels, const std::vector<bool>& is_taken, const Pose* now, Look& look);

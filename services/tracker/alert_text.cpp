@@ -68,13 +68,38 @@ std::string_view ReasonText(Unseen why) {
   }
 }
 
-std::string PartText(const UnseenPart& part) {
+std::string BearingsText(const Sector& bearing) {
   constexpr std::int64_t kCircleDeg = 360;
   const auto whole_deg = [](double bearing_rad) { return std::lround(RadToDeg(bearing_rad)) % kCircleDeg; };
-  std::string text = "all round";
-  if (part.bearing.width_rad < kTwoPi - 1e-9) {
-    text = fmt::format("{} to {} deg", whole_deg(part.bearing.start_rad), whole_deg(part.bearing.start_rad + part.bearing.width_rad));
+  if (bearing.width_rad >= kTwoPi - 1e-9) return "all round";
+  return fmt::format("{} to {} deg", whole_deg(bearing.start_rad), whole_deg(bearing.start_rad + bearing.width_rad));
+}
+
+std::string_view ReasonText(Cover why) {
+  switch (why) {
+    case Cover::kNear:
+      return "something nearer than 1 m covers the lidar";
+    case Cover::kOwnGone:
+      return "the lidar saw the own boat there, and sees nothing any more: window covered, or a part of the boat gone";
+    default:
+      return "the lidar sees nothing any more: lasers off, or window covered";
   }
+}
+
+// Three are named.
+template <typename Part>
+std::string PartsText(std::span<const Part> parts, std::string (*text_of)(const Part&)) {
+  constexpr std::size_t kMostParts = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(parts.size(), kMostParts); ++i) text += (i > 0 ? "; " : "") + text_of(parts[i]);
+  if (parts.size() > kMostParts) text += fmt::format("; and {} more", parts.size() - kMostParts);
+  return text;
+}
+
+std::string PartText(const CoveredPart& part) { return fmt::format("{} ({})", BearingsText(part.bearing), ReasonText(part.why)); }
+
+std::string PartText(const UnseenPart& part) {
+  std::string text = BearingsText(part.bearing);
   if (!part.begins_with_zone && !part.ends_with_zone) {
     text += fmt::format(", {:.1f} to {:.1f} m", part.from_m, part.to_m);
   } else if (!part.begins_with_zone) {
@@ -88,12 +113,10 @@ std::string PartText(const UnseenPart& part) {
 }  // namespace
 
 std::string TextOf(std::span<const UnseenPart> parts, bool is_whole) {
-  constexpr std::size_t kMostParts = 3;
-  std::string text = is_whole ? "no look-out in the whole guard zone: " : "no look-out in part of the guard zone: ";
-  for (std::size_t i = 0; i < std::min(parts.size(), kMostParts); ++i) text += (i > 0 ? "; " : "") + PartText(parts[i]);
-  if (parts.size() > kMostParts) text += fmt::format("; and {} more", parts.size() - kMostParts);
-  return text;
+  return (is_whole ? "no look-out in the whole guard zone: " : "no look-out in part of the guard zone: ") + PartsText<UnseenPart>(parts, PartText);
 }
+
+std::string TextOf(std::span<const CoveredPart> parts) { return "no look-out: " + PartsText<CoveredPart>(parts, PartText); }
 
 std::string NameOf(const Alert& alert) {
   if (alert.cause == AlertCause::kWatch) return {};
@@ -105,6 +128,7 @@ std::string NameOf(const Alert& alert) {
 
 std::string TextOf(const Alert& alert) {
   if (alert.thing == kUnseenBySecond) return alert.Holds() ? "no look-out by the second lidar" : "look-out by the second lidar again";
+  if (alert.thing == kSeesNothing) return alert.Holds() ? std::string(kSeesNothingText) : "the lidar sees something again";
   if (alert.cause == AlertCause::kWatch) return "no look-out";
   if (!alert.Holds()) return EndText(alert);
   const auto who = NameOf(alert);

@@ -3,12 +3,18 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
+#include "common/core/cover_watch.hpp"
 #include "services/tracker/core/alerts.hpp"
 #include "services/tracker/core/tracker.hpp"
 #include "services/tracker/core/zone_sight.hpp"
 
 namespace lookout::tracker {
+
+/// Where no return came for CoverWatch::kNothingS.
+inline constexpr std::string_view kSeesNothingText =
+    "perhaps no look-out: the lidar has seen nothing at all for 30 s (lasers off, window covered, or flat water and nothing near)";
 
 /// Short: "boat 17", "land", "obstacle"; nothing where nobody looks.
 std::string NameOf(const Alert& alert);
@@ -24,5 +30,9 @@ std::string SummaryOf(std::span<const Alert> alerts);
 /// Three parts are named, and how many more there are.
 /// @param parts  one at least
 std::string TextOf(std::span<const UnseenPart> parts, bool is_whole);
+
+/// "no look-out: 150 to 210 deg (something nearer than 1 m covers the lidar)"
+/// @param parts  one at least
+std::string TextOf(std::span<const CoveredPart> parts);
 
 }  // namespace lookout::tracker

@@ -123,6 +123,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
     }
   }
   params.zone_sight = ToZoneSight(zone, *boat, *segmenter);
+  params.cover = {boat->T_vessel_lidar, segmenter->min_range_m(), params.zone_sight.field_of_view, boat->own_vessel_box_m};
   params.zone_sight.expected_elevation_rad = ExpectedElevations(config_folder);
   params.tracker.T_vessel_lidar = boat->T_vessel_lidar;
   params.tracker.reference_point_above_water_m = boat->reference_point_above_water_m;

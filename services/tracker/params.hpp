@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "common/core/cover_watch.hpp"
 #include "services/tracker/core/look_out.hpp"
 #include "services/tracker/core/tracker.hpp"
 #include "services/tracker/core/zone_sight.hpp"
@@ -14,6 +15,7 @@ struct Params {
   TrackerParams tracker;
   LookOutParams look_out = {};
   ZoneSightParams zone_sight = {};
+  CoverParams cover = {};
   std::chrono::microseconds wait_timeout{500'000};  // live only
 };
 

@@ -145,7 +145,7 @@ void Service::AdvanceTo(Utime host_time) {
 bool Service::TakeWatchChange() { return std::exchange(reported_failing_, watch_.is_failing()) != watch_.is_failing(); }
 
 void Service::Finish() {
-  for (const auto& scan : gatherer_.Finish()) {
+  for (auto& scan : gatherer_.Finish()) {
     if (context_.script && context_.script->stretches.back().last < scan.key()) {
       ++counts_["scans_not_of_the_live_run"];  // its process was stopped while this one waited
     } else {
@@ -154,11 +154,11 @@ void Service::Finish() {
   }
 }
 
-void Service::Use(const std::vector<GatheredScan>& scans) {
-  for (const auto& scan : scans) Use(scan);
+void Service::Use(std::vector<GatheredScan> scans) {
+  for (auto& scan : scans) Use(scan);
 }
 
-void Service::Use(const GatheredScan& scan) {
+void Service::Use(GatheredScan& scan) {
   if (!FollowScript(scan.key())) {
     ++counts_["scans_not_of_the_live_run"];
     return;
@@ -182,7 +182,8 @@ void Service::Use(const GatheredScan& scan) {
   const auto& input = scan.input;
   // The look-out goes on without the second lidar; but what that saw may still be there.
   watch_.NoteScan(input.time, (input.flags & ~kFlagsOfSecond) == 0);
-  const bool is_whole = input.flags == 0;
+  WatchForCovers(scan.input);
+  const bool is_whole = input.flags == 0 && !memory_->cover.covers_anew();
   is_placed_ = input.own.has_value();
   if (input.own) memory_->own = input.own;
 
@@ -199,7 +200,7 @@ void Service::Use(const GatheredScan& scan) {
   auto message =
       ToMessage(*label_, {alerts, acknowledged, orders, look_out.sounding(), look_out.silenced_until(), look_out.limits(), look_out.names().All()},
                 picture, bus::kMaxMessageBytes - kZoneTextBytes);
-  TellOfZone(message);
+  TellOfUnseen(message);
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
   HandOver(message, picture);
@@ -294,14 +295,44 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
   return taken;
 }
 
-// A part of the guard zone that nobody looks into, and a second lidar that is silent, are alerts like others: decided by the scans, so that a replay
-// gives the same.
+// Beams of a covered sector that show nothing end at the lidar: nobody knows what is behind.
+void Service::WatchForCovers(ScanInput& input) {
+  if (!input.sweep) return;
+  auto& sweep = *input.sweep;
+  auto& cover = memory_->cover;
+  const std::size_t num_rings = sweep.elevation_rad.size();
+  cover.Begin();
+  for (std::size_t column = 0; column < sweep.azimuth_rad.size(); ++column) {
+    const auto range_m = std::span(sweep.range_m).subspan(column * num_rings, num_rings);
+    cover.AddColumn(static_cast<double>(sweep.azimuth_rad[column]), sweep.azimuth_offset_rad, sweep.elevation_rad, range_m);
+  }
+  cover.End(input.end_time);
+  if (!cover.covers_any()) return;
+  for (std::size_t cell = 0; cell < sweep.range_m.size(); ++cell) {
+    const double azimuth_rad =
+        static_cast<double>(sweep.azimuth_rad[cell / num_rings]) + static_cast<double>(sweep.azimuth_offset_rad[cell % num_rings]);
+    sweep.range_m[cell] = cover.EndOf(azimuth_rad, sweep.range_m[cell]);
+  }
+}
+
+// A part of the guard zone that nobody looks into, a lidar that is covered, and a second lidar that is silent, are alerts like others: decided by the
+// scans, so that a replay gives the same.
 std::vector<Danger> Service::LookForUnseen(const ScanInput& input) {
   std::vector<Danger> unseen;
+  const auto add = [&unseen](std::int64_t thing, double bearing_rad = kNan, bool is_grave = false) {
+    unseen.push_back(
+        {.cause = AlertCause::kWatch, .thing = thing, .probability = 1.0, .distance_m = kNan, .bearing_rad = bearing_rad, .is_grave = is_grave});
+  };
   memory_->is_second_silent = (input.flags & obstacles_t::FLAG_SECOND_SILENT) != 0;
-  if (memory_->is_second_silent) {
-    unseen.push_back({.cause = AlertCause::kWatch, .thing = kUnseenBySecond, .probability = 1.0, .distance_m = kNan, .bearing_rad = kNan});
+  if (memory_->is_second_silent) add(kUnseenBySecond);
+  const auto& cover = memory_->cover;
+  if (const auto parts = cover.parts(); !parts.empty()) {
+    memory_->cover_text = TextOf(parts);
+    const auto& bearing = parts.front().bearing;
+    const bool is_one = parts.size() == 1 && bearing.width_rad < kTwoPi;
+    add(kSeesNothing - cover.num_told(), is_one ? WrapTo2Pi(bearing.start_rad + bearing.width_rad / 2.0) : kNan, cover.is_all_round());
   }
+  if (cover.sees_nothing()) add(kSeesNothing);
   auto& zone_sight = memory_->zone_sight;
   if (input.sweep) zone_sight.Update(input.end_time, *input.sweep);
   if (const auto danger = zone_sight.danger()) {
@@ -311,14 +342,22 @@ std::vector<Danger> Service::LookForUnseen(const ScanInput& input) {
   return unseen;
 }
 
-// Words on the guard zone, which no alert holds.
-void Service::TellOfZone(alerts_t& message) const {
+// Words on what is not seen, which no alert holds.
+void Service::TellOfUnseen(alerts_t& message) const {
   const auto& alerts = memory_->look_out.alerts();
   for (auto& alert : message.alerts) {
     const auto of_look_out = std::ranges::find(alerts, alert.id, &Alert::id);
-    if (of_look_out == alerts.end() || of_look_out->cause != AlertCause::kWatch || of_look_out->thing == kUnseenBySecond) continue;
-    const bool is_over = alert.state >= alert_t::STATE_RECTIFIED && memory_->zone_sight.parts().empty();
-    alert.text = is_over ? "look-out in all of the guard zone again" : memory_->zone_text;
+    if (of_look_out == alerts.end() || of_look_out->cause != AlertCause::kWatch) continue;
+    const auto thing = of_look_out->thing;
+    if (thing == kUnseenBySecond || thing == kSeesNothing) continue;
+    const bool is_of_cover = thing < kSeesNothing;
+    const bool is_seen = is_of_cover ? memory_->cover.num_lasting() == 0 : memory_->zone_sight.parts().empty();
+    const bool is_over = alert.state >= alert_t::STATE_RECTIFIED && is_seen;
+    if (is_of_cover) {
+      alert.text = is_over ? "nothing covers the lidar any more" : memory_->cover_text;
+    } else {
+      alert.text = is_over ? "look-out in all of the guard zone again" : memory_->zone_text;
+    }
   }
 }
 
@@ -342,7 +381,7 @@ void Service::SendWatch() {
   const auto& look_out = memory_->look_out;
   auto message = ToMessage(*label_, {alerts, {}, {}, look_out.sounding(), look_out.silenced_until(), look_out.limits(), look_out.names().All()},
                            memory_->picture != nullptr ? *memory_->picture : Picture{}, bus::kMaxMessageBytes / 2);
-  TellOfZone(message);
+  TellOfUnseen(message);
   auto alert = ToMessage(*watch_.alert(), std::nullopt);
   alert.text = alert.state == alert_t::STATE_CLEARED ? "look-out again" : "no look-out: " + watch_.Complaint();
   message.is_watch = true;
@@ -372,6 +411,7 @@ HealthReport Service::Report() const {
   add_parts(labels_parts_);
   counts.AppendTo(report.counters);
   report.counters.push_back({"times_unwatched", watch_.num_failures()});
+  report.counters.push_back({"lidar_covered_deg", memory_ ? memory_->cover.num_lasting() * 360 / std::int64_t{CoverWatch::kNumSectors} : 0});
   report.counters.push_back({"guard_zone_unseen_deg", memory_ ? memory_->zone_sight.unseen_deg() : 0});
   obstacles_refused_.AppendTo(report.counters);
   beams_refused_.AppendTo(report.counters);
@@ -382,6 +422,8 @@ HealthReport Service::Report() const {
 
   if (const auto complaint = watch_.Complaint(); !complaint.empty()) report.Degrade("no look-out: " + complaint);
   if (memory_ && memory_->is_second_silent) report.Degrade("no look-out by the second lidar");
+  if (memory_ && memory_->cover.num_lasting() > 0) report.Degrade(memory_->cover_text);
+  if (memory_ && memory_->cover.sees_nothing()) report.Degrade(std::string(kSeesNothingText));
   if (memory_ && !memory_->zone_sight.parts().empty()) report.Degrade(memory_->zone_text);
   if (!is_placed_) report.Degrade("no position or heading: what is seen is not tracked");
   if (const auto text = obstacles_watch_.Complaint(); !text.empty()) report.Degrade(text);

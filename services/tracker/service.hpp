@@ -59,12 +59,14 @@ class Service {
  private:
   // Tracks and alerts, from the begin of a process.
   struct Memory {
-    explicit Memory(const Params& params) : tracker(params.tracker), look_out(params.look_out), zone_sight(params.zone_sight) {}
+    explicit Memory(const Params& params) : tracker(params.tracker), look_out(params.look_out), zone_sight(params.zone_sight), cover(params.cover) {}
     Tracker tracker;
     LookOut look_out;
     ZoneSight zone_sight;
+    CoverWatch cover;
     bool is_second_silent = false;  // in the last scan
     std::string zone_text;          // of the last part of the guard zone that nobody looked into
+    std::string cover_text;         // of what covered the lidar last
     KeptAcknowledgements kept;
     KeptNames kept_names;
     const Picture* picture = nullptr;  // of the last scan: the tracker's own
@@ -83,16 +85,17 @@ class Service {
   void AddBeams(std::span<const lidar_scan_t> parts, bool is_whole);
   void AddLabels(std::span<const segments_t> parts, bool is_whole);
 
-  void Use(const std::vector<GatheredScan>& scans);
-  void Use(const GatheredScan& scan);
+  void Use(std::vector<GatheredScan> scans);
+  void Use(GatheredScan& scan);
   void Keep(const Datum& datum, const Eigen::Vector2d& shift_m);
   void KeepBesideBoat(const ScanInput& input);
   bool FollowScript(const ScanKey& key);
   void Begin(const ScanKey& begin);
   std::vector<Acknowledgement> TakeAcknowledgements(const ScanInput& input, const Picture& picture);
   std::vector<Order> TakeOrders(const ScanInput& input);
+  void WatchForCovers(ScanInput& input);
   std::vector<Danger> LookForUnseen(const ScanInput& input);
-  void TellOfZone(alerts_t& message) const;
+  void TellOfUnseen(alerts_t& message) const;
   void HandOver(const alerts_t& message, const Picture& picture) const;
   void SendWatch();
 

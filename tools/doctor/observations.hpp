@@ -85,7 +85,8 @@ enum class Via {
 /// Shots into one degree of azimuth of the lidar's frame.
 struct AzimuthSeen {
   std::int64_t num_shots = 0;
-  std::int64_t num_own = 0;  // of them, returns within own_vessel
+  std::int64_t num_returns = 0;
+  std::int64_t num_own = 0;  // of these, within own_vessel
 };
 
 struct LidarSeen {

@@ -1,6 +1,7 @@
 // Which lidars speak, the lines that lidar.txtpb needs for them, and where they look.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -173,6 +174,12 @@ Findings CheckSpeakers(const Observations& seen) {
 
 Findings CheckWindow(const Observations& seen) {
   const auto& azimuths = seen.lidar.azimuths;
+  std::int64_t num_shots = 0;
+  for (const auto& azimuth : azimuths) num_shots += azimuth.num_shots;
+  if (num_shots > 0 && std::ranges::all_of(azimuths, [](const auto& azimuth) { return azimuth.num_returns == 0; })) {
+    return {Warning(kWindowSubject, fmt::format("the lidar fires, and none of its {} beams returned: lasers off, or window covered", num_shots),
+                    "look at the lidar, and walk past it; over flat water, with nothing near and the own boat not in sight, it may be well")};
+  }
   const auto dark = DarkStretch(azimuths);
   constexpr int kWholeDeg = 5;  // a gap as small as that is no window
   if (dark.size_deg <= kWholeDeg || dark.size_deg >= 360) return {};

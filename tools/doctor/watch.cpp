@@ -326,6 +326,7 @@ void Notes::CountAzimuths(const lidar_scan_t& message) {
       ++azimuth.num_shots;
       const auto range = static_cast<std::uint16_t>(message.range[(column * num_rings + ring) * num_returns]);
       const double range_m = range * message.range_unit_m;
+      if (range != 0) ++azimuth.num_returns;
       if (range == 0 || range_m > own_radius_m) continue;
       const double level_m = range_m * std::cos(message.elevation_rad[ring]);
       const Eigen::Vector3d p_lidar_m(level_m * std::cos(azimuth_rad), -level_m * std::sin(azimuth_rad),

@@ -68,6 +68,7 @@ struct ScanHead {
 struct SegmentPart {
   ScanHead head;
   std::vector<Segment> segments;
+  std::int64_t num_returns = 0;  // of the columns of this part, in segments or not
 };
 
 // Numbers are those of the wire.

@@ -27,10 +27,11 @@ void SecondLidar::Add(const SegmentPart& part) {
     began_.reset();
     seq_.reset();
   }
-  NotePart(part.head);
+  NotePart(part);
   // A scan has come whole with its last part. One whose last part was lost is covered by the next.
   if (part.head.part_index == part.head.num_parts - 1) {
     if (!began_ || (!scans_.empty() && end - scans_.back().end > kSilence)) began_ = end;
+    NoteReturns();
     if (scans_.empty() || scans_.back().end != end) scans_.push_back({end, is_whole_});
   }
   for (const auto& segment : part.segments) segments_.push_back(segment);
@@ -44,15 +45,26 @@ void SecondLidar::Add(const SegmentPart& part) {
 }
 
 // A scan is whole where all its parts came in their order, and it follows the one before.
-void SecondLidar::NotePart(const ScanHead& head) {
+void SecondLidar::NotePart(const SegmentPart& part) {
+  const auto& head = part.head;
   if (head.part_index == 0 || seq_ != head.seq) {
     is_whole_ = head.scan_flags == 0 && head.part_index == 0 && (!seq_ || (has_ended_ && head.seq == *seq_ + 1));
     next_part_ = 0;
+    num_returns_ = 0;
   }
+  num_returns_ += part.num_returns;
   is_whole_ = is_whole_ && head.part_index == next_part_;
   has_ended_ = head.part_index == head.num_parts - 1;
   seq_ = head.seq;
   ++next_part_;
+}
+
+// Of a scan whose last part came.
+void SecondLidar::NoteReturns() {
+  constexpr double kWeight = 0.05;  // two seconds of scans
+  const bool is_dark = num_returns_ == 0 && mean_returns_ >= kMuch;
+  if (is_dark) is_whole_ = false;
+  if (!is_dark) mean_returns_ += kWeight * (static_cast<double>(num_returns_) - mean_returns_);
 }
 
 bool SecondLidar::IsGoingOn(Utime end_time) const {

@@ -31,6 +31,8 @@ class SecondLidar {
   static constexpr std::chrono::seconds kExpected{3};
   /// It looks while so many whole scans ended within so long: as many as it takes to raise an alert.
   static constexpr std::size_t kWholeScans = 3;
+  /// Nor does it look where a scan has no return, and those of the last seconds had so many: its lasers are off, or its window is covered.
+  static constexpr double kMuch = 100.0;
   static constexpr std::chrono::seconds kWithin{1};
   /// With one scan of the first: as many messages as they may need are bounded.
   static constexpr std::size_t kMaxSegments = 180;
@@ -61,11 +63,12 @@ class SecondLidar {
  private:
   struct Scan {
     Utime end;
-    bool is_whole = true;  // nothing of it was lost, and no scan before it
+    bool is_whole = true;  // nothing of it was lost, and no scan before it; and it is not dark
   };
 
   bool IsGoingOn(Utime end_time) const;
-  void NotePart(const ScanHead& head);
+  void NotePart(const SegmentPart& part);
+  void NoteReturns();
 
   std::deque<Segment> segments_;     // by arrival
   std::deque<Scan> scans_;           // that have come, by their ends
@@ -73,6 +76,8 @@ class SecondLidar {
   std::int32_t next_part_ = 0;       // of that scan
   bool has_ended_ = true;            // that scan
   bool is_whole_ = false;            // that scan, so far
+  std::int64_t num_returns_ = 0;     // of that scan, so far
+  double mean_returns_ = 0.0;        // of the last scans, before it became dark
   std::optional<Utime> began_;       // end of the first scan since it was silent
   std::optional<Utime> last_taken_;  // end of the last scan of the first
   std::optional<Utime> first_time_;  // of the first scan of the first since that began

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/cover_watch.hpp"
 #include "common/core/elementary.hpp"
 #include "common/core/frames.hpp"
 
@@ -54,7 +55,7 @@ void LidarSight::Add(const Column& column) {
     const auto range_m = static_cast<double>(column.range_m[ring]);
     const bool is_own =
         range_m > 0.0 &&
-        (range_m < params_.min_range_m ||
+        (range_m < params_.min_range_m || range_m <= CoverWatch::kAtLidarM ||
          (!params_.own_vessel_box_m.isEmpty() && params_.own_vessel_box_m.contains(params_.T_vessel_lidar.translation() + range_m * direction)));
     if (is_own) continue;
     is_looking = true;

@@ -24,6 +24,8 @@ inline constexpr std::int64_t kUnnamed = -1;
 inline constexpr std::int64_t kFirstUnseenId = -1'000'000;
 // What a second lidar would see, which does not look; the parts of the zone are below it.
 inline constexpr std::int64_t kUnseenBySecond = kFirstUnseenId;
+// A lidar that sees nothing at all, for whatever reason; what covers it is below.
+inline constexpr std::int64_t kSeesNothing = -2'000'000;
 // An alert that many things share.
 constexpr bool IsOfPlaces(std::int64_t thing) { return thing == kLandTrack || thing == kUnnamed || thing <= kFirstUnseenId; }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/core/cover_watch.hpp"
 #include "common/core/elementary.hpp"
 #include "common/core/frames.hpp"
 
@@ -285,13 +286,13 @@ void ZoneSight::Trace(const Sweep& sweep) {
     reach_m = std::max(reach_m, range_m);
   };
   const auto& box_m = params_.own_vessel_box_m;
-  double own_reach_m = params_.min_range_m;
+  double own_reach_m = std::max(params_.min_range_m, static_cast<double>(CoverWatch::kAtLidarM));
   if (!box_m.isEmpty()) {
     const Eigen::Vector3d p_lidar_m = params_.T_vessel_lidar.translation();
     own_reach_m = std::max(own_reach_m, (box_m.min() - p_lidar_m).cwiseAbs().cwiseMax((box_m.max() - p_lidar_m).cwiseAbs()).norm());
   }
   const auto is_own = [&](std::size_t column, std::size_t ring, double range_m) {
-    if (range_m < params_.min_range_m) return true;
+    if (range_m < params_.min_range_m || range_m <= CoverWatch::kAtLidarM) return true;
     if (box_m.isEmpty()) return false;
     const double azimuth_rad = static_cast<double>(sweep.azimuth_rad[column]) + static_cast<double>(sweep.azimuth_offset_rad[ring]);
     return box_m.contains(params_.T_vessel_lidar * Eigen::Vector3d(range_m * BeamDirection(azimuth_rad, sweep.elevation_rad[ring])));

@@ -164,6 +164,15 @@ TEST_F(DoctorCapture, SaysWhereAWindowLooks) {
   EXPECT_SAYS(About(Ask(kOusterLines), "window"), kWarning, "it faces the mast or the hull");
 }
 
+// The cover was forgotten: its packets were whole, and all was well.
+TEST_F(DoctorCapture, SaysThatNoBeamReturned) {
+  WriteMetadata(OusterProfile::kSingle, 32);
+  MakeOuster(OusterProfile::kSingle, 32, 0, 0, 1023, 0);
+  EXPECT_SAYS(About(Ask(kOusterLines), "window"), kWarning, "beams returned: lasers off, or window covered");
+  MakeOuster(OusterProfile::kSingle, 32);
+  EXPECT_EQ(About(Ask(kOusterLines), "window").text, "");
+}
+
 TEST_F(DoctorCapture, TellsAHesaiFromWhatTheConfigSays) {
   CaptureFile(capture_).Add(kStartNs, {255, 255, 255, 255}, 2368, lidar::MadeHesaiPacket(lidar::HesaiModel::kXt32, 0x37).bytes);
   const auto findings = Ask("model: MODEL_VLP32C");

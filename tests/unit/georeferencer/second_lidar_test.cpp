@@ -189,6 +189,24 @@ TEST(SecondLidar, WhoseScanHasAHoleMakesScansThatAreNotWhole) {
   for (std::size_t i = 40; i < 60; ++i) EXPECT_EQ(lost[i], i >= 50 && i <= 52 ? kHoleFlag : 0) << i;
 }
 
+// Its lasers fail, its packets go on.
+TEST(SecondLidar, ThatSeesNothingAnyMoreIsNoLookOut) {
+  const auto flags = FlagsWith([](int number, SegmentPart& part) {
+    part.num_returns = number >= 40 && number < 60 ? 0 : 400;
+    return true;
+  });
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(flags[i], 0) << i;
+  for (std::size_t i = 42; i < 48; ++i) EXPECT_EQ(flags[i], kHoleFlag) << i;
+  for (std::size_t i = 50; i < 62; ++i) EXPECT_EQ(flags[i], kSilentFlag) << i;
+  for (std::size_t i = 66; i < 78; ++i) EXPECT_EQ(flags[i], 0) << i;
+  // Flat water from the start looks the same.
+  const auto flat = FlagsWith([](int, SegmentPart& part) {
+    part.num_returns = 0;
+    return true;
+  });
+  for (std::size_t i = 0; i < 78; ++i) EXPECT_EQ(flat[i], 0) << i;
+}
+
 TEST(SecondLidar, WithAHoleInMostScansIsNoLookOut) {
   const auto flags = FlagsWith([](int number, SegmentPart& part) {
     part.head.scan_flags = number >= 40 && number % 5 != 0 ? 4 : 0;

@@ -213,6 +213,30 @@ TEST_F(MavlinkService, SaysNothingIsClearWhereAPoseWithinTheScanIsMissing) {
 }
 
 // Without the scan nobody knows what else is there; without a track either there is nothing to say.
+// Lasers off: packets came, without a return, and all was clear.
+TEST_F(MavlinkService, SaysNothingIsClearWhereTheLidarSeesNothingAnyMore) {
+  const std::vector<Polygon> quay{Box(Ahead(1, 0.0, -25.0), 60.0, 3.0, 0.5)};
+  const auto num_of = [this](std::uint16_t distance_cm) {
+    const auto frame = Last();
+    int count = 0;
+    for (std::size_t i = 0; frame && i < kNumSectors; ++i) count += frame->distance_cm(i) == distance_cm ? 1 : 0;
+    return count;
+  };
+  constexpr std::uint16_t kClear = 4001;
+  EXPECT_GT(num_of(kClear), 60) << "flat water is clear where nothing says otherwise";
+  things_ = quay;
+  for (int i = 0; i < 20; ++i) num_of(kClear);
+  EXPECT_GT(num_of(kClear), 20);
+  things_.clear();
+  EXPECT_FALSE(Last()) << "nothing is known";
+  tracks_ = {TrackOf(4, Box(Ahead(1, 10.0, 0.0), 2.0, 2.0, -heading_rad_))};
+  EXPECT_EQ(num_of(kClear), 0);
+  EXPECT_GT(num_of(MavSectors::kUnknown), 60);
+  tracks_.clear();
+  things_ = quay;
+  EXPECT_GT(num_of(kClear), 20);
+}
+
 TEST_F(MavlinkService, SaysNothingIsClearWithoutTheScan) {
   tracks_ = {TrackOf(4, Box(Ahead(1, 10.0, 0.0), 2.0, 2.0, -heading_rad_))};
   // A structure is told by its returns, where they come.

@@ -1,0 +1,180 @@
+#include "common/core/cover_watch.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/core/elementary.hpp"
+#include "common/core/frames.hpp"
+
+namespace lookout {
+
+namespace {
+
+constexpr double kLongestStepS = 0.5;  // while no scan came nobody knows what it would have shown
+constexpr double kCoverTimeS = 2.0;
+constexpr double kLastsShare = 0.75;
+constexpr double kIsOverShare = 0.4;
+// The hull and what is fixed to it are seen in each scan; a crew moves, spray comes and goes. The share starts at 0, so it takes 23 s.
+constexpr double kOwnTimeS = 10.0;
+constexpr double kOwnShare = 0.9;
+constexpr int kLeastOwn = 2;
+// A single return may be a stray one.
+constexpr int kMostStrays = 1;
+// Covered sectors with so many between in which nothing is seen are one.
+constexpr std::size_t kMostBetween = 6;
+// No lidar that sees so much loses all of it within a scan, unless it is blind.
+constexpr double kMuch = 100.0;
+constexpr double kMuchTimeS = 2.0;
+
+}  // namespace
+
+CoverWatch::CoverWatch(const CoverParams& params) : params_(params), own_reach_m_(params.min_range_m) {
+  const auto& box_m = params_.own_vessel_box_m;
+  if (box_m.isEmpty()) return;
+  const Eigen::Vector3d p_lidar_m = params_.T_vessel_lidar.translation();
+  own_reach_m_ = std::max(own_reach_m_, (box_m.min() - p_lidar_m).cwiseAbs().cwiseMax((box_m.max() - p_lidar_m).cwiseAbs()).norm());
+}
+
+bool CoverWatch::IsOwn(double azimuth_rad, double elevation_rad, double range_m) const {
+  if (range_m < params_.min_range_m) return true;
+  if (params_.own_vessel_box_m.isEmpty()) return false;
+  return params_.own_vessel_box_m.contains(params_.T_vessel_lidar * Eigen::Vector3d(range_m * BeamDirection(azimuth_rad, elevation_rad)));
+}
+
+void CoverWatch::AddColumn(double azimuth_rad, std::span<const float> azimuth_offset_rad, std::span<const float> elevation_rad,
+                           std::span<const float> range_m) {
+  for (std::size_t ring = 0; ring < range_m.size(); ++ring) {
+    const double beam_rad = azimuth_rad + static_cast<double>(azimuth_offset_rad[ring]);
+    auto& sector = now_[IndexOf(beam_rad)];
+    ++sector.num_shots;
+    const auto range = static_cast<double>(range_m[ring]);
+    if (range <= 0.0) continue;
+    ++sector.num_returns;
+    if (range > own_reach_m_ || !IsOwn(beam_rad, static_cast<double>(elevation_rad[ring]), range)) continue;
+    ++sector.num_own;
+    if (range < kNearM) ++sector.num_near;
+  }
+}
+
+void CoverWatch::End(Utime time) {
+  const double step_s = newest_ ? std::clamp(ToSeconds(time - *newest_), 0.0, kLongestStepS) : 0.0;
+  newest_ = time;
+  std::int64_t num_returns = 0;
+  for (const auto& sector : now_) num_returns += sector.num_returns;
+  const bool is_dark = num_returns == 0 && mean_returns_ >= kMuch;
+  if (!is_dark) mean_returns_ += std::min(1.0, step_s / kMuchTimeS) * (static_cast<double>(num_returns) - mean_returns_);
+  FindCovers(is_dark);
+  KeepWide();
+  Learn(step_s);
+  Tell();
+  WatchForNothing(num_returns == 0 && !is_dark, step_s);
+}
+
+void CoverWatch::FindCovers(bool is_dark) {
+  for (std::size_t i = 0; i < kNumSectors; ++i) {
+    auto& state = sectors_[i];
+    const auto& seen = now_[i];
+    state.cover = Cover::kNo;
+    state.is_looked_at = seen.num_shots > 0 && params_.field_of_view.Contains((static_cast<double>(i) + 0.5) * kTwoPi / kNumSectors);
+    if (!state.is_looked_at) continue;
+    if (is_dark) {
+      state.cover = Cover::kDark;
+    } else if (2 * seen.num_near >= seen.num_shots) {
+      state.cover = Cover::kNear;
+    } else if (seen.num_returns <= kMostStrays && state.own_share >= kOwnShare) {
+      state.cover = Cover::kOwnGone;
+    }
+  }
+}
+
+// Bridges sectors in which nothing is seen between covered ones, and leaves out what is narrow.
+void CoverWatch::KeepWide() {
+  const auto covers = [this](std::size_t i) { return sectors_[i % kNumSectors].cover != Cover::kNo; };
+  const auto is_silent = [this](std::size_t i) {
+    const auto& seen = now_[i % kNumSectors];
+    return seen.num_shots > 0 && seen.num_returns <= kMostStrays;
+  };
+  std::array<Cover, kNumSectors> bridged{};
+  for (std::size_t i = 0; i < kNumSectors; ++i) {
+    if (!covers(i)) continue;
+    std::size_t next = i + 1;
+    while (next - i <= kMostBetween && !covers(next) && is_silent(next)) ++next;
+    if (!covers(next)) next = i + 1;
+    for (std::size_t k = i; k < next; ++k) bridged[k % kNumSectors] = sectors_[i].cover;
+  }
+  const auto is_none = [&bridged](std::size_t i) { return bridged[i % kNumSectors] == Cover::kNo; };
+  for (std::size_t i = 0; i < kNumSectors; ++i) {
+    std::size_t before = 0;
+    std::size_t behind = 0;
+    while (before < kLeastSectors && !is_none(i + kNumSectors - before)) ++before;
+    while (behind < kLeastSectors && !is_none(i + behind)) ++behind;
+    sectors_[i].cover = before + behind > kLeastSectors ? bridged[i] : Cover::kNo;
+  }
+}
+
+void CoverWatch::Learn(double step_s) {
+  covers_any_ = covers_anew_ = false;
+  for (std::size_t i = 0; i < kNumSectors; ++i) {
+    auto& state = sectors_[i];
+    const auto& seen = now_[i];
+    if (seen.num_shots == 0) continue;
+    const bool is_covered = state.cover != Cover::kNo;
+    covers_any_ |= is_covered;
+    covers_anew_ |= is_covered && state.has_looked;
+    state.has_looked |= !is_covered;
+    state.cover_share += step_s / kCoverTimeS * ((is_covered ? 1.0 : 0.0) - state.cover_share);
+    // Where nothing is seen the own boat is not forgotten: a cover may be drawn over the lidar slowly, and stay.
+    if (is_covered || seen.num_returns <= kMostStrays) {
+      if (state.own_share < kOwnShare) state.own_share -= step_s / kOwnTimeS * state.own_share;
+    } else {
+      state.own_share += step_s / kOwnTimeS * ((seen.num_own >= kLeastOwn ? 1.0 : 0.0) - state.own_share);
+    }
+    if (state.cover_share < kIsOverShare) {
+      state.lasting = Cover::kNo;
+    } else if (is_covered && (state.cover_share > kLastsShare || state.lasting != Cover::kNo)) {
+      state.lasting = state.cover;
+    }
+  }
+}
+
+void CoverWatch::Tell() {
+  const auto lasts = [](const State& state) { return state.lasting != Cover::kNo; };
+  const auto num_new = std::ranges::count_if(sectors_, [&](const State& state) { return lasts(state) && !state.was_told; });
+  num_lasting_ = std::ranges::count_if(sectors_, lasts);
+  is_all_round_ = num_lasting_ > 0 && std::ranges::all_of(sectors_, [&](const State& state) { return lasts(state) || !state.is_looked_at; });
+  const bool is_new = std::cmp_greater_equal(num_new, kLeastSectors);
+  if (is_new) ++num_told_;
+  for (auto& state : sectors_) state.was_told = lasts(state) && (is_new || state.was_told);
+}
+
+std::vector<CoveredPart> CoverWatch::parts() const {
+  const auto bearing_of = [this](std::size_t edge) {
+    const Eigen::Vector3d direction = params_.T_vessel_lidar.linear() * BeamDirection(static_cast<double>(edge) * kTwoPi / kNumSectors, 0.0);
+    return WrapTo2Pi(Atan2(-direction.y(), direction.x()));
+  };
+  const bool is_upright = params_.T_vessel_lidar.linear()(2, 2) > 0.0;
+  const auto why_at = [this](std::size_t i) { return sectors_[i % kNumSectors].lasting; };
+  std::vector<CoveredPart> parts;
+  for (std::size_t i = 0; i < kNumSectors; ++i) {
+    if (why_at(i) == Cover::kNo) continue;
+    const bool is_first = why_at(i + kNumSectors - 1) != why_at(i);
+    if (!is_first && !(i == 0 && std::ranges::all_of(sectors_, [&](const State& state) { return state.lasting == why_at(0); }))) continue;
+    std::size_t count = 1;
+    while (count < kNumSectors && why_at(i + count) == why_at(i)) ++count;
+    const double width_rad = static_cast<double>(count) * kTwoPi / kNumSectors;
+    parts.push_back({why_at(i), {count == kNumSectors ? 0.0 : bearing_of(is_upright ? i : i + count), width_rad}});
+  }
+  return parts;
+}
+
+void CoverWatch::WatchForNothing(bool is_nothing, double step_s) {
+  if (is_nothing) {
+    nothing_s_ = std::min(kNothingS, nothing_s_ + step_s);
+  } else {
+    nothing_s_ = sees_nothing_ ? nothing_s_ - step_s * kNothingS / kSomethingS : 0.0;
+  }
+  if (nothing_s_ >= kNothingS) sees_nothing_ = true;
+  if (nothing_s_ <= 0.0) sees_nothing_ = false;
+}
+
+}  // namespace lookout
