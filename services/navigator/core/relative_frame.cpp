@@ -171,7 +171,7 @@ void RelativeFrame::Skip(std::chrono::microseconds duration) {
 }
 
 Pose RelativeFrame::At(const Pose& earth, double tilt_sd_rad) {
-  const auto pose = Shown(earth, tilt_sd_rad);
+  auto pose = Shown(earth, tilt_sd_rad);
   last_shown_ = earth.time;
   return pose;
 }
