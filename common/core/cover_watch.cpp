@@ -22,11 +22,25 @@ constexpr int kLeastOwn = 2;
 constexpr int kMostStrays = 1;
 // Covered sectors with so many between in which nothing is seen are one.
 constexpr std::size_t kMostBetween = 6;
-// No lidar that sees so much loses all of it within a scan, unless it is blind.
-constexpr double kMuch = 100.0;
-constexpr double kMuchTimeS = 2.0;
+// And of a scan, of so many shots each.
+constexpr std::int64_t kShotsOfAStray = 1000;
+// What was seen is not there any more after so long unseen: as long as a track stays.
+constexpr double kStaysS = 30.0;
+constexpr double kToldForS = 10.0;
+// A sector at which the lidar has not fired for so long is none; the packets of one may be lost.
+constexpr double kUnfiredS = 2.0;
+constexpr double kMostSkippedS = 5.0;
 
 }  // namespace
+
+bool Darkness::Add(std::int64_t num_returns, std::int64_t most_strays) {
+  const bool is_empty = num_returns <= most_strays;
+  if (!is_dark_) is_dark_ = is_empty && std::ranges::all_of(last_, [](std::int64_t returns) { return returns >= kMuch; });
+  std::ranges::rotate(last_, last_.end() - 1);
+  last_.front() = num_returns;
+  if (is_dark_) is_dark_ = std::ranges::any_of(last_, [most_strays](std::int64_t returns) { return returns <= most_strays; });
+  return is_dark_;
+}
 
 CoverWatch::CoverWatch(const CoverParams& params) : params_(params), own_reach_m_(params.min_range_m) {
   const auto& box_m = params_.own_vessel_box_m;
@@ -59,24 +73,43 @@ void CoverWatch::AddColumn(double azimuth_rad, std::span<const float> azimuth_of
 void CoverWatch::End(Utime time) {
   const double step_s = newest_ ? std::clamp(ToSeconds(time - *newest_), 0.0, kLongestStepS) : 0.0;
   newest_ = time;
+  std::int64_t num_shots = 0;
   std::int64_t num_returns = 0;
-  for (const auto& sector : now_) num_returns += sector.num_returns;
-  const bool is_dark = num_returns == 0 && mean_returns_ >= kMuch;
-  if (!is_dark) mean_returns_ += std::min(1.0, step_s / kMuchTimeS) * (static_cast<double>(num_returns) - mean_returns_);
-  FindCovers(is_dark);
+  for (const auto& sector : now_) {
+    num_shots += sector.num_shots;
+    num_returns += sector.num_returns;
+  }
+  const bool is_dark = darkness_.Add(num_returns, std::max<std::int64_t>(kMostStrays, num_shots / kShotsOfAStray));
+  FindCovers(is_dark, step_s);
   KeepWide();
   Learn(step_s);
-  Tell();
-  WatchForNothing(num_returns == 0 && !is_dark, step_s);
+  Tell(step_s);
+  WatchForNothing(num_returns <= kMostStrays && !is_dark, step_s);
 }
 
-void CoverWatch::FindCovers(bool is_dark) {
+void CoverWatch::Skip(Utime time) {
+  covers_any_ = covers_anew_ = false;
+  for (auto& state : sectors_) state.cover = Cover::kNo;
+  if (!newest_ || ToSeconds(time - *newest_) < kMostSkippedS) return;
+  for (auto& state : sectors_) {
+    state.lasting = Cover::kNo;
+    state.cover_share = 0.0;
+  }
+  nothing_s_ = 0.0;
+  sees_nothing_ = false;
+  Tell(0.0);
+}
+
+void CoverWatch::FindCovers(bool is_dark, double step_s) {
   for (std::size_t i = 0; i < kNumSectors; ++i) {
     auto& state = sectors_[i];
     const auto& seen = now_[i];
+    const bool is_fired = seen.num_shots > 0;
+    const bool is_taken = params_.field_of_view.Contains((static_cast<double>(i) + 0.5) * kTwoPi / kNumSectors);
+    state.unfired_s = is_fired ? 0.0 : state.unfired_s + step_s;
+    state.is_looked_at = is_taken && (is_fired || (state.is_looked_at && state.unfired_s < kUnfiredS));
     state.cover = Cover::kNo;
-    state.is_looked_at = seen.num_shots > 0 && params_.field_of_view.Contains((static_cast<double>(i) + 0.5) * kTwoPi / kNumSectors);
-    if (!state.is_looked_at) continue;
+    if (!is_taken || !is_fired) continue;
     if (is_dark) {
       state.cover = Cover::kDark;
     } else if (2 * seen.num_near >= seen.num_shots) {
@@ -87,7 +120,7 @@ void CoverWatch::FindCovers(bool is_dark) {
   }
 }
 
-// Bridges sectors in which nothing is seen between covered ones, and leaves out what is narrow.
+// Bridges sectors in which nothing is seen behind as many covered ones, and leaves out what is narrow.
 void CoverWatch::KeepWide() {
   const auto covers = [this](std::size_t i) { return sectors_[i % kNumSectors].cover != Cover::kNo; };
   const auto is_silent = [this](std::size_t i) {
@@ -97,8 +130,10 @@ void CoverWatch::KeepWide() {
   std::array<Cover, kNumSectors> bridged{};
   for (std::size_t i = 0; i < kNumSectors; ++i) {
     if (!covers(i)) continue;
+    std::size_t before = 1;
+    while (before < kMostBetween && covers(i + kNumSectors - before)) ++before;
     std::size_t next = i + 1;
-    while (next - i <= kMostBetween && !covers(next) && is_silent(next)) ++next;
+    while (next - i <= before && !covers(next) && is_silent(next)) ++next;
     if (!covers(next)) next = i + 1;
     for (std::size_t k = i; k < next; ++k) bridged[k % kNumSectors] = sectors_[i].cover;
   }
@@ -117,11 +152,14 @@ void CoverWatch::Learn(double step_s) {
   for (std::size_t i = 0; i < kNumSectors; ++i) {
     auto& state = sectors_[i];
     const auto& seen = now_[i];
+    if (!state.is_looked_at) state.cover_share = 0.0;
+    if (state.cover_share == 0.0) state.lasting = Cover::kNo;
     if (seen.num_shots == 0) continue;
     const bool is_covered = state.cover != Cover::kNo;
     covers_any_ |= is_covered;
     covers_anew_ |= is_covered && state.has_looked;
-    state.has_looked |= !is_covered;
+    state.covered_s = is_covered ? state.covered_s + step_s : 0.0;
+    state.has_looked = !is_covered || (state.has_looked && state.covered_s < kStaysS);
     state.cover_share += step_s / kCoverTimeS * ((is_covered ? 1.0 : 0.0) - state.cover_share);
     // Where nothing is seen the own boat is not forgotten: a cover may be drawn over the lidar slowly, and stay.
     if (is_covered || seen.num_returns <= kMostStrays) {
@@ -137,14 +175,17 @@ void CoverWatch::Learn(double step_s) {
   }
 }
 
-void CoverWatch::Tell() {
+void CoverWatch::Tell(double step_s) {
   const auto lasts = [](const State& state) { return state.lasting != Cover::kNo; };
   const auto num_new = std::ranges::count_if(sectors_, [&](const State& state) { return lasts(state) && !state.was_told; });
   num_lasting_ = std::ranges::count_if(sectors_, lasts);
   is_all_round_ = num_lasting_ > 0 && std::ranges::all_of(sectors_, [&](const State& state) { return lasts(state) || !state.is_looked_at; });
   const bool is_new = std::cmp_greater_equal(num_new, kLeastSectors);
   if (is_new) ++num_told_;
-  for (auto& state : sectors_) state.was_told = lasts(state) && (is_new || state.was_told);
+  for (auto& state : sectors_) {
+    state.free_s = lasts(state) ? 0.0 : state.free_s + step_s;
+    state.was_told = (lasts(state) && is_new) || (state.was_told && state.free_s < kToldForS);
+  }
 }
 
 std::vector<CoveredPart> CoverWatch::parts() const {

@@ -22,6 +22,24 @@ enum class Cover : std::uint8_t {
   kDark,     // the lidar saw much in the scans before, and there is no return in all of this one
 };
 
+/// Whether a lidar has become dark: it saw much in each of the last scans, and nothing in this one. What goes out of reach does so by and by.
+class Darkness {
+ public:
+  /// Returns of a scan.
+  static constexpr std::int64_t kMuch = 100;
+
+  /// The next scan.
+  ///
+  /// @param most_strays  so many returns and fewer are none
+  /// @return whether it is dark. It is so until three scans in a row have returns
+  bool Add(std::int64_t num_returns, std::int64_t most_strays);
+
+ private:
+  static constexpr std::size_t kNumScans = 3;
+  std::array<std::int64_t, kNumScans> last_{};  // returns of the last scans, the newest first
+  bool is_dark_ = false;
+};
+
 struct CoverParams {
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
   double min_range_m = 0.0;                   // of the segmenter
@@ -55,6 +73,8 @@ class CoverWatch {
   /// @param range_m             [rings] of the nearest return; 0 = none
   void AddColumn(double azimuth_rad, std::span<const float> azimuth_offset_rad, std::span<const float> elevation_rad, std::span<const float> range_m);
   void End(Utime time);
+  /// In place of a scan of which the returns did not come: nothing is covered in it, and after some seconds nothing is told any more.
+  void Skip(Utime time);
 
   /// Of the scan that ended last.
   /// @param azimuth_rad  of a beam, offset included; from minus a turn on
@@ -70,7 +90,7 @@ class CoverWatch {
   std::vector<CoveredPart> parts() const;
   std::int64_t num_lasting() const { return num_lasting_; }  // sectors
   bool is_all_round() const { return is_all_round_; }
-  /// A number that grows each time that 30 deg come up which were not told before. 0: nothing was.
+  /// A number that grows each time that 30 deg come up which were not told in the last 10 s. 0: nothing was.
   std::int64_t num_told() const { return num_told_; }
   /// No return for kNothingS, and nothing tells why: the lasers may be off, the window covered, or the water flat and empty.
   bool sees_nothing() const { return sees_nothing_; }
@@ -88,18 +108,21 @@ class CoverWatch {
     double own_share = 0.0;     // of scans in which the own boat was seen there
     double cover_share = 0.0;   // of the last seconds
     bool is_looked_at = false;  // the lidar fires there, and the segmenter takes it
-    bool has_looked = false;
+    bool has_looked = false;    // what was seen there may still be there
     bool was_told = false;
+    double unfired_s = 0.0;  // since the lidar fired there last
+    double covered_s = 0.0;  // since it was not covered last
+    double free_s = 0.0;     // since a cover lasted there
   };
 
   static std::size_t IndexOf(double azimuth_rad) {
     return static_cast<std::size_t>(azimuth_rad * (static_cast<double>(kNumSectors) / kTwoPi) + static_cast<double>(kNumSectors)) % kNumSectors;
   }
   bool IsOwn(double azimuth_rad, double elevation_rad, double range_m) const;
-  void FindCovers(bool is_dark);
+  void FindCovers(bool is_dark, double step_s);
   void KeepWide();
   void Learn(double step_s);
-  void Tell();
+  void Tell(double step_s);
   void WatchForNothing(bool is_nothing, double step_s);
 
   CoverParams params_;
@@ -111,7 +134,7 @@ class CoverWatch {
   std::int64_t num_lasting_ = 0;
   bool is_all_round_ = false;
   std::int64_t num_told_ = 0;
-  double mean_returns_ = 0.0;  // of a scan, in the last seconds before it became dark
+  Darkness darkness_;
   double nothing_s_ = 0.0;
   bool sees_nothing_ = false;
   std::optional<Utime> newest_;

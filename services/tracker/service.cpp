@@ -297,9 +297,9 @@ std::vector<Order> Service::TakeOrders(const ScanInput& input) {
 
 // Beams of a covered sector that show nothing end at the lidar: nobody knows what is behind.
 void Service::WatchForCovers(ScanInput& input) {
-  if (!input.sweep) return;
-  auto& sweep = *input.sweep;
   auto& cover = memory_->cover;
+  if (!input.sweep) return cover.Skip(input.end_time);
+  auto& sweep = *input.sweep;
   const std::size_t num_rings = sweep.elevation_rad.size();
   cover.Begin();
   for (std::size_t column = 0; column < sweep.azimuth_rad.size(); ++column) {
@@ -326,7 +326,7 @@ std::vector<Danger> Service::LookForUnseen(const ScanInput& input) {
   memory_->is_second_silent = (input.flags & obstacles_t::FLAG_SECOND_SILENT) != 0;
   if (memory_->is_second_silent) add(kUnseenBySecond);
   const auto& cover = memory_->cover;
-  if (const auto parts = cover.parts(); !parts.empty()) {
+  if (const auto parts = cover.parts(); !parts.empty() && cover.num_told() > 0) {
     memory_->cover_text = TextOf(parts);
     const auto& bearing = parts.front().bearing;
     const bool is_one = parts.size() == 1 && bearing.width_rad < kTwoPi;

@@ -61,10 +61,7 @@ void SecondLidar::NotePart(const SegmentPart& part) {
 
 // Of a scan whose last part came.
 void SecondLidar::NoteReturns() {
-  constexpr double kWeight = 0.05;  // two seconds of scans
-  const bool is_dark = num_returns_ == 0 && mean_returns_ >= kMuch;
-  if (is_dark) is_whole_ = false;
-  if (!is_dark) mean_returns_ += kWeight * (static_cast<double>(num_returns_) - mean_returns_);
+  if (darkness_.Add(num_returns_, kMostStrays)) is_whole_ = false;
 }
 
 bool SecondLidar::IsGoingOn(Utime end_time) const {

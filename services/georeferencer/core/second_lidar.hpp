@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/core/cover_watch.hpp"
 #include "common/core/utime.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
 
@@ -31,8 +32,8 @@ class SecondLidar {
   static constexpr std::chrono::seconds kExpected{3};
   /// It looks while so many whole scans ended within so long: as many as it takes to raise an alert.
   static constexpr std::size_t kWholeScans = 3;
-  /// Nor does it look where a scan has no return, and those of the last seconds had so many: its lasers are off, or its window is covered.
-  static constexpr double kMuch = 100.0;
+  /// Nor does it look where it has become dark (common/core/cover_watch.hpp): so many returns of a scan and fewer are none.
+  static constexpr std::int64_t kMostStrays = 20;
   static constexpr std::chrono::seconds kWithin{1};
   /// With one scan of the first: as many messages as they may need are bounded.
   static constexpr std::size_t kMaxSegments = 180;
@@ -77,7 +78,7 @@ class SecondLidar {
   bool has_ended_ = true;            // that scan
   bool is_whole_ = false;            // that scan, so far
   std::int64_t num_returns_ = 0;     // of that scan, so far
-  double mean_returns_ = 0.0;        // of the last scans, before it became dark
+  Darkness darkness_;
   std::optional<Utime> began_;       // end of the first scan since it was silent
   std::optional<Utime> last_taken_;  // end of the last scan of the first
   std::optional<Utime> first_time_;  // of the first scan of the first since that began

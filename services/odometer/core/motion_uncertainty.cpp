@@ -53,11 +53,13 @@ void MotionUncertainty::BeginAtPlace() {
 void MotionUncertainty::LimitRates(double speed_sd_mps, double turn_sd_radps) {
   const Eigen::Matrix3d before = rates();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(before.topLeftCorner<2, 2>());
-  const Eigen::Vector2d worst = solver.eigenvectors().col(1);
   const auto factor = [](double most, double variance) { return variance > most * most ? most / std::sqrt(variance) : 1.0; };
   // Scaling the errors, with their correlations, keeps the matrix a covariance.
   Matrix12 scale = Matrix12::Identity();
-  scale.block<2, 2>(kRates, kRates) -= (1.0 - factor(speed_sd_mps, solver.eigenvalues()[1])) * worst * worst.transpose();
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::Vector2d direction = solver.eigenvectors().col(i);
+    scale.block<2, 2>(kRates, kRates) -= (1.0 - factor(speed_sd_mps, solver.eigenvalues()[i])) * direction * direction.transpose();
+  }
   scale(kRates + 2, kRates + 2) = factor(turn_sd_radps, before(2, 2));
   covariance_ = (scale * covariance_ * scale).eval();
 }

@@ -71,6 +71,13 @@ Eigen::Matrix3d PlanarOf(const Matrix6& matrix) {
   return part;
 }
 
+// Bounds a covariance in every direction by that of the prediction, of which it is a share.
+Eigen::Matrix3d NoWorseThan(const Eigen::Matrix3d& predicted, const Eigen::Matrix3d& covariance) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, predicted);
+  const Eigen::Matrix3d scaled = predicted * solver.eigenvectors();
+  return scaled * solver.eigenvalues().cwiseMin(1.0).asDiagonal() * scaled.transpose();
+}
+
 // Covariance of the place after the fit and the prediction. The noise of normals adds spurious information: along a straight quay, normals that are
 // wrong by degrees seem to tell the way. The information matrix of the fit is therefore reduced by the one that is expected of this noise.
 //
@@ -91,7 +98,7 @@ Eigen::Matrix3d PlaceCovarianceOf(const Fit& fit, const Eigen::Matrix3d& predict
     const double variance = rest > 0.0 ? std::min(1.0 / (rest * rest) + scaled.dot(distortion * scaled), most) : most;
     covariance += variance * direction * direction.transpose();
   }
-  return covariance;
+  return NoWorseThan(predicted, covariance);
 }
 
 // Squares of the water in which points lie, and groups of squares that touch, corners too.

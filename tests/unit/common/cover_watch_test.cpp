@@ -194,6 +194,85 @@ TEST_F(CoverWatchTest, IsDarkWhereMuchWasSeenAndNothingIsNow) {
   EXPECT_FALSE(watch_.is_all_round());
 }
 
+// Strays, of the sun or of another lidar, must not end it.
+TEST_F(CoverWatchTest, StaysDarkWithStrays) {
+  const World quay = [](int degree, std::size_t ring) { return ring == 2 && IsWithin(degree, 0, 120) ? 30.0F : 0.0F; };
+  const World stray = [](int degree, std::size_t ring) { return ring == 2 && degree == 77 ? 30.0F : 0.0F; };
+  const World strays = [](int degree, std::size_t ring) { return ring == 2 && degree < 5 ? 30.0F : 0.0F; };
+  Scans(10.0, quay);
+  for (int i = 0; i < 300; ++i) {
+    Scans(0.3, stray);
+    Scans(0.2, strays);
+  }
+  EXPECT_EQ(Told(), "0+360 why 3");
+  EXPECT_EQ(watch_.num_told(), 1);
+  // Returns in each scan: it sees.
+  Scans(3.0, strays);
+  EXPECT_EQ(Told(), "");
+}
+
+// A VLP-16 that leaves a harbour loses more with each scan; the boat does not see itself.
+TEST_F(CoverWatchTest, IsNotDarkWhereTheHarbourGoesOutOfReach) {
+  for (const int scans : {20, 40, 100}) {
+    CoverWatch watch(MakeParams());
+    Scans(
+        5.0, [](int, std::size_t) { return 80.0F; }, &watch);
+    for (int i = scans; i >= 0; --i) {
+      Scans(
+          0.1, [=](int degree, std::size_t) { return degree < 360 * i / scans ? 90.0F : 0.0F; }, &watch);
+    }
+    Scans(5.0, Water, &watch);
+    EXPECT_FALSE(watch.covers_any()) << scans;
+  }
+}
+
+// The own field of view of the lidar is narrowed: what does not fire is not covered.
+TEST_F(CoverWatchTest, EndsWhereTheLidarFiresNoMore) {
+  Scans(5.0, Covered(Deck, 120, 200, 0.7F));
+  EXPECT_EQ(Told(), "120+80 why 1");
+  for (int i = 0; i < 40; ++i) {
+    time_ += std::chrono::milliseconds(100);
+    watch_.Begin();
+    for (int degree = 0; degree < 100; ++degree)
+      watch_.AddColumn(DegToRad(degree + 0.5), kNoOffsetRad, kElevationRad, std::vector<float>{2.0F, 0.0F, 0.0F, 0.0F});
+    watch_.End(time_);
+  }
+  EXPECT_EQ(Told(), "");
+}
+
+TEST_F(CoverWatchTest, TellsNothingWhereNoScanComesAnyMore) {
+  Scans(5.0, Covered(Deck, 120, 200, 0.7F));
+  watch_.Skip(time_ + std::chrono::seconds(1));
+  EXPECT_FALSE(watch_.covers_any());
+  EXPECT_EQ(Told(), "120+80 why 1");
+  watch_.Skip(time_ + std::chrono::seconds(6));
+  EXPECT_EQ(Told(), "");
+  EXPECT_EQ(watch_.num_lasting(), 0);
+}
+
+// A helmsman who steps aside and comes back is told once.
+TEST_F(CoverWatchTest, TellsOnceWhatComesBack) {
+  Scans(5.0, Covered(Deck, 120, 200, 0.7F));
+  for (int i = 0; i < 5; ++i) {
+    Scans(5.0, Deck);
+    Scans(5.0, Covered(Deck, 120, 200, 0.7F));
+  }
+  EXPECT_EQ(watch_.num_told(), 1);
+  Scans(15.0, Deck);
+  Scans(5.0, Covered(Deck, 120, 200, 0.7F));
+  EXPECT_EQ(watch_.num_told(), 2);
+}
+
+// Later scans count as whole again: what was seen in the sector is not waited for any more.
+TEST_F(CoverWatchTest, ACoverThatStaysHidesNothingNew) {
+  Scans(5.0, Deck);
+  Scans(10.0, Covered(Deck, 120, 200, 0.7F));
+  EXPECT_TRUE(watch_.covers_anew());
+  Scans(25.0, Covered(Deck, 120, 200, 0.7F));
+  EXPECT_FALSE(watch_.covers_anew());
+  EXPECT_TRUE(watch_.covers_any());
+}
+
 // A last buoy that goes out of reach, or shore that fades, is no darkness.
 TEST_F(CoverWatchTest, IsNotDarkWhereThingsGoOutOfReach) {
   for (int width_deg = 300; width_deg >= 0; width_deg -= 2) {
@@ -211,8 +290,8 @@ TEST_F(CoverWatchTest, SaysAfterHalfAMinuteThatItSeesNothing) {
   EXPECT_TRUE(watch_.sees_nothing());
   EXPECT_EQ(Told(), "") << "flat water looks so, too";
   EXPECT_FALSE(watch_.covers_any()) << "and it is looked at, if it is that";
-  // A single return, as of noise or of a bird, is not enough: else it would come up twice a minute.
-  const World bird = [](int degree, std::size_t ring) { return ring == 2 && degree == 50 ? 20.0F : 0.0F; };
+  // Few returns, as of a bird, are not enough: else it would come up twice a minute.
+  const World bird = [](int degree, std::size_t ring) { return ring == 2 && degree >= 50 && degree < 53 ? 20.0F : 0.0F; };
   for (int i = 0; i < 10; ++i) {
     Scans(0.2, bird);
     Scans(5.0, Water);
