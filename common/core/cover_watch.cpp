@@ -36,7 +36,7 @@ constexpr double kMostSkippedS = 5.0;
 bool Darkness::Add(std::int64_t num_returns, std::int64_t most_strays) {
   const bool is_empty = num_returns <= most_strays;
   if (!is_dark_) is_dark_ = is_empty && std::ranges::all_of(last_, [](std::int64_t returns) { return returns >= kMuch; });
-  std::ranges::rotate(last_, last_.end() - 1);
+  std::shift_right(last_.begin(), last_.end(), 1);
   last_.front() = num_returns;
   if (is_dark_) is_dark_ = std::ranges::any_of(last_, [most_strays](std::int64_t returns) { return returns <= most_strays; });
   return is_dark_;
