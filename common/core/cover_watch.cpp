@@ -42,17 +42,11 @@ bool Darkness::Add(std::int64_t num_returns, std::int64_t most_strays) {
   return is_dark_;
 }
 
-CoverWatch::CoverWatch(const CoverParams& params) : params_(params), own_reach_m_(params.min_range_m) {
-  const auto& box_m = params_.own_vessel_box_m;
-  if (box_m.isEmpty()) return;
-  const Eigen::Vector3d p_lidar_m = params_.T_vessel_lidar.translation();
-  own_reach_m_ = std::max(own_reach_m_, (box_m.min() - p_lidar_m).cwiseAbs().cwiseMax((box_m.max() - p_lidar_m).cwiseAbs()).norm());
-}
+CoverWatch::CoverWatch(const CoverParams& params) : params_(params), own_vessel_(params.own_vessel_box_m, params.T_vessel_lidar) {}
 
 bool CoverWatch::IsOwn(double azimuth_rad, double elevation_rad, double range_m) const {
   if (range_m < params_.min_range_m) return true;
-  if (params_.own_vessel_box_m.isEmpty()) return false;
-  return params_.own_vessel_box_m.contains(params_.T_vessel_lidar * Eigen::Vector3d(range_m * BeamDirection(azimuth_rad, elevation_rad)));
+  return own_vessel_.ReachesTo(range_m) && own_vessel_.Contains(range_m * BeamDirection(azimuth_rad, elevation_rad));
 }
 
 void CoverWatch::AddColumn(double azimuth_rad, std::span<const float> azimuth_offset_rad, std::span<const float> elevation_rad,
@@ -64,7 +58,7 @@ void CoverWatch::AddColumn(double azimuth_rad, std::span<const float> azimuth_of
     const auto range = static_cast<double>(range_m[ring]);
     if (range <= 0.0) continue;
     ++sector.num_returns;
-    if (range > own_reach_m_ || !IsOwn(beam_rad, static_cast<double>(elevation_rad[ring]), range)) continue;
+    if (!IsOwn(beam_rad, static_cast<double>(elevation_rad[ring]), range)) continue;
     ++sector.num_own;
     if (range < kNearM) ++sector.num_near;
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/core/angles.hpp"
+#include "common/core/own_vessel.hpp"
 #include "common/core/utime.hpp"
 
 namespace lookout {
@@ -126,7 +127,7 @@ class CoverWatch {
   void WatchForNothing(bool is_nothing, double step_s);
 
   CoverParams params_;
-  double own_reach_m_;
+  OwnVessel own_vessel_;
   std::array<Counts, kNumSectors> now_{};
   std::array<State, kNumSectors> sectors_{};
   bool covers_any_ = false;

@@ -13,6 +13,9 @@ namespace lookout::navigator {
 /// With variances times this, the covariance of a motion is positive definite, also where the text has rounded it.
 inline constexpr double kInflatedVariance = 1.01;
 
+/// Least deviation of a motion in each direction, m; those stated are of the fit alone.
+inline constexpr double kMotionSdM = 0.03;
+
 /// Motion over the water from `begin` to `end`, in the levelled vessel frame at `begin`.
 struct OdometryMotion {
   Utime begin;

@@ -6,34 +6,11 @@
 #include <limits>
 
 #include "common/core/elementary.hpp"
+#include "common/core/own_vessel.hpp"
 
 namespace lookout::segmenter {
 
 namespace {
-
-// Whether a point is in the box of the own vessel; most points are too far away and take one comparison.
-class OwnVessel {
- public:
-  explicit OwnVessel(const ReturnFilter& filter) : box_m_(filter.own_vessel_box_m), T_vessel_lidar_(filter.T_vessel_lidar) {
-    if (box_m_.isEmpty()) return;
-    const Eigen::Vector3d p_lidar_m = T_vessel_lidar_.translation();
-    const Eigen::Vector3d reach_m = (box_m_.min() - p_lidar_m).cwiseAbs().cwiseMax((box_m_.max() - p_lidar_m).cwiseAbs());
-    squared_reach_m2_ = reach_m.squaredNorm() * kMargin;
-  }
-
-  bool Contains(const Point& point) const {
-    if (squared_reach_m2_ < 0.0) return false;  // no box
-    const Eigen::Vector3d p_lidar_m(point.x_m, point.y_m, point.z_m);
-    return p_lidar_m.squaredNorm() <= squared_reach_m2_ && box_m_.contains(T_vessel_lidar_ * p_lidar_m);
-  }
-
- private:
-  static constexpr double kMargin = 1.0 + 1e-9;  // for rounding
-
-  const Eigen::AlignedBox3d& box_m_;
-  const Eigen::Isometry3d& T_vessel_lidar_;
-  double squared_reach_m2_ = -1.0;
-};
 
 // In range units. 0.1 m is 50 units of 2 mm, whichever way the division rounds.
 int MaxRepeatGap(double max_repeat_gap_m, double range_unit_m) {
@@ -54,7 +31,7 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
   const auto num_returns = static_cast<std::size_t>(scan.head.num_returns);
   const std::size_t cells_per_column = rings_.size() * num_returns;
   const bool sees_all_round = filter_.field_of_view.width_rad >= kTwoPi;
-  const OwnVessel own_vessel(filter_);
+  const OwnVessel own_vessel(filter_.own_vessel_box_m, filter_.T_vessel_lidar);
 
   occupied_.resize(cells_per_column + 1);
   result_.label.assign(scan.num_cells(), 0);
@@ -94,7 +71,7 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
       const double cos_elevation_sin = geometry.cos_elevation_cos_offset * sin_azimuth + geometry.cos_elevation_sin_offset * cos_azimuth;
       const Point point{static_cast<float>(range_m * cos_elevation_cos), static_cast<float>(-range_m * cos_elevation_sin),
                         static_cast<float>(range_m * geometry.sin_elevation + geometry.origin_height_m)};
-      if (own_vessel.Contains(point)) {
+      if (own_vessel.Contains(Eigen::Vector3d(point.x_m, point.y_m, point.z_m))) {
         result_.label[cell] = ToLabel(Reason::kOwnVessel);
         continue;
       }

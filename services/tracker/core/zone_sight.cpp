@@ -10,6 +10,7 @@
 #include "common/core/cover_watch.hpp"
 #include "common/core/elementary.hpp"
 #include "common/core/frames.hpp"
+#include "common/core/own_vessel.hpp"
 
 namespace lookout::tracker {
 
@@ -285,17 +286,12 @@ void ZoneSight::Trace(const Sweep& sweep) {
     auto& reach_m = reach_m_[wrapped * num_rings + ring];
     reach_m = std::max(reach_m, range_m);
   };
-  const auto& box_m = params_.own_vessel_box_m;
-  double own_reach_m = std::max(params_.min_range_m, static_cast<double>(CoverWatch::kAtLidarM));
-  if (!box_m.isEmpty()) {
-    const Eigen::Vector3d p_lidar_m = params_.T_vessel_lidar.translation();
-    own_reach_m = std::max(own_reach_m, (box_m.min() - p_lidar_m).cwiseAbs().cwiseMax((box_m.max() - p_lidar_m).cwiseAbs()).norm());
-  }
+  const OwnVessel own_vessel(params_.own_vessel_box_m, params_.T_vessel_lidar);
   const auto is_own = [&](std::size_t column, std::size_t ring, double range_m) {
     if (range_m < params_.min_range_m || range_m <= CoverWatch::kAtLidarM) return true;
-    if (box_m.isEmpty()) return false;
+    if (!own_vessel.ReachesTo(range_m)) return false;
     const double azimuth_rad = static_cast<double>(sweep.azimuth_rad[column]) + static_cast<double>(sweep.azimuth_offset_rad[ring]);
-    return box_m.contains(params_.T_vessel_lidar * Eigen::Vector3d(range_m * BeamDirection(azimuth_rad, sweep.elevation_rad[ring])));
+    return own_vessel.Contains(range_m * BeamDirection(azimuth_rad, sweep.elevation_rad[ring]));
   };
   constexpr double kDegreesOfRad = 180.0 / kPi;
   const std::size_t num_columns = sweep.azimuth_rad.size();
@@ -305,7 +301,7 @@ void ZoneSight::Trace(const Sweep& sweep) {
     const double beside_deg = 0.5 * std::min({apart_deg(column, column + 1), apart_deg(column + num_columns - 1, column), kMostApartDeg});
     for (std::size_t ring = 0; ring < num_rings; ++ring) {
       const double range_m = sweep.range_m[column * num_rings + ring];
-      const bool is_stopped = range_m > 0.0 && range_m <= own_reach_m && is_own(column, ring, range_m);
+      const bool is_stopped = range_m > 0.0 && is_own(column, ring, range_m);
       const float reach_m = is_stopped ? static_cast<float>(range_m) : kFree;
       const double azimuth_deg = kDegreesOfRad * (column_rad(column) + static_cast<double>(sweep.azimuth_offset_rad[ring]));
       const double whole_deg = std::floor(azimuth_deg);

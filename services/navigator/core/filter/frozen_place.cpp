@@ -5,6 +5,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
+#include "services/navigator/core/filter/state.hpp"
 
 namespace lookout::navigator {
 
@@ -12,11 +13,8 @@ namespace {
 
 constexpr double kMaxVelocityAgeS = 2.0;  // a velocity stands for no longer
 constexpr double kMetresPerDeg = 111'320.0;
-// Noise of a motion, as motion_aiding.cpp has it: what is shorter than three of it is none.
-constexpr double kMotionSdM = 0.03;
+// A motion that is shorter than this many of its deviations is noise.
 constexpr double kInSds = 3.0;
-
-double SecondsFrom(Utime from, Utime to) { return std::chrono::duration<double>(to - from).count(); }
 
 void LearnStep(double before_deg, double now_deg, double& step_deg) {
   const double step = std::abs(now_deg - before_deg);
@@ -34,17 +32,18 @@ double FrozenPlaces::Place::StepM() const {
 
 Eigen::Vector2d FrozenPlaces::Receiver::WayAt(Utime time) const {
   if (!velocity_time) return way_m;
-  return way_m + std::clamp(SecondsFrom(*velocity_time, time), 0.0, kMaxVelocityAgeS) * velocity_mps;
+  return way_m + std::clamp(filter::SecondsBetween(*velocity_time, time), 0.0, kMaxVelocityAgeS) * velocity_mps;
 }
 
 bool FrozenPlaces::Receiver::HasVelocity(Utime time) const {
-  return velocity_time && std::abs(SecondsFrom(*velocity_time, time)) <= kMaxVelocityAgeS;
+  return velocity_time && std::abs(filter::SecondsBetween(*velocity_time, time)) <= kMaxVelocityAgeS;
 }
 
 void FrozenPlaces::AddVelocity(Utime time, double speed_mps, double course_rad, Receiver& receiver) {
   const bool is_at_rest = speed_mps < kLeastSpeedMps;
   if (std::isnan(speed_mps) || (std::isnan(course_rad) && !is_at_rest)) return;
-  const bool is_late = receiver.velocity_time && time < *receiver.velocity_time && SecondsFrom(time, *receiver.velocity_time) < kMaxVelocityAgeS;
+  const bool is_late =
+      receiver.velocity_time && time < *receiver.velocity_time && filter::SecondsBetween(time, *receiver.velocity_time) < kMaxVelocityAgeS;
   if (is_late) return;
   receiver.way_m = receiver.WayAt(time);
   receiver.velocity_time = time;
@@ -89,7 +88,7 @@ bool FrozenPlaces::Judge(const GnssFix& fix) {
   const double way_m = WayM(time, receiver, place);
   receiver.is_frozen = way_m > std::max(kMostWayM, kMostSteps * place.StepM());
   place.is_frozen_by_lidar = receiver.is_frozen && !receiver.HasVelocity(time);
-  if (receiver.is_frozen) last_ = {fix.source, time, SecondsFrom(place.since, time), way_m};
+  if (receiver.is_frozen) last_ = {fix.source, time, filter::SecondsBetween(place.since, time), way_m};
   return receiver.is_frozen;
 }
 
@@ -103,7 +102,7 @@ void FrozenPlaces::Add(const OdometryMotion& motion) {
   if (!motion.is_known) return;
   const auto& way_m = motion.displacement_m;
   const double sd_m = Hypot(kMotionSdM, std::sqrt(std::max(motion.covariance(0, 0), motion.covariance(1, 1))));
-  const double least_m = std::max(kLeastSpeedMps * SecondsFrom(motion.begin, motion.end), kInSds * sd_m);
+  const double least_m = std::max(kLeastSpeedMps * filter::SecondsBetween(motion.begin, motion.end), kInSds * sd_m);
   // Forward and port of the begin in axes of which the second is along the bow of the first scan.
   const auto [sin, cos] = SinCosOf(lidar_heading_rad_);
   if (way_m.norm() > least_m) lidar_way_m_ += Eigen::Vector2d(sin * way_m.x() - cos * way_m.y(), cos * way_m.x() + sin * way_m.y());

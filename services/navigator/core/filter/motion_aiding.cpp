@@ -11,8 +11,7 @@ namespace lookout::navigator::filter {
 
 namespace {
 
-// Least deviations of a motion by the lidar, of each direction and of the turn; those stated are of the fit alone.
-constexpr double kMotionSdM = 0.03;
+// Beside kMotionSdM.
 constexpr double kMotionSdShare = 0.02;  // of the way
 constexpr double kMotionTurnSdRad = DegToRad(0.02);
 constexpr double kMotionTurnSdShare = 0.01;  // of the turn

@@ -31,6 +31,11 @@ constexpr double kUpSdMps = 0.5;
 // A compass that turns around, with the greatest deviation of its card each way, and the lidar's own error: in deviations of the compass.
 constexpr double kMostApartInSds = 5.0;
 
+double NextRefusalS(const std::optional<Utime>& refused_until, double refusal_s, Utime time) {
+  if (!refused_until || SecondsBetween(*refused_until, time) > kForgivenAfter * refusal_s) return kFirstRefusalS;
+  return std::min(2.0 * refusal_s, kMaxRefusalS);
+}
+
 }  // namespace
 
 // Not through ToSeconds: its nanoseconds overflow after 292 years, and times from outside may be 300 years apart.
@@ -63,15 +68,6 @@ State FreshState(Utime time, double tilt_sd_rad) {
 double State::HorizontalVarianceM2() const { return std::max(covariance(kPositionEast, kPositionEast), covariance(kPositionNorth, kPositionNorth)); }
 
 Eigen::Vector3d AntennaLever(const FilterParams& params) { return params.p_vessel_antenna_m - params.p_vessel_imu_m; }
-
-namespace {
-
-double NextRefusalS(const std::optional<Utime>& refused_until, double refusal_s, Utime time) {
-  if (!refused_until || SecondsBetween(*refused_until, time) > kForgivenAfter * refusal_s) return kFirstRefusalS;
-  return std::min(2.0 * refusal_s, kMaxRefusalS);
-}
-
-}  // namespace
 
 void RefuseImu(double tilt_sd_rad, State& state) {
   state.aiding.imu_refusal_s = NextRefusalS(state.aiding.imu_refused_until, state.aiding.imu_refusal_s, state.time);
