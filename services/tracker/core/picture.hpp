@@ -12,6 +12,7 @@
 #include "services/tracker/core/encounter.hpp"
 #include "services/tracker/core/land_approach.hpp"
 #include "services/tracker/core/outline.hpp"
+#include "services/tracker/core/watched_water.hpp"
 
 namespace lookout::tracker {
 
@@ -42,6 +43,7 @@ struct Track {
   std::vector<std::int32_t> segment_ids;
   std::vector<std::int64_t> parents;
   std::vector<std::int64_t> children;
+  Watched way;  // of a moving one: its foremost place, before it can have come there
   int num_seen = 0;
   int num_looks = 0;
   double mean_returns = 0.0;

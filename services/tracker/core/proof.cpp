@@ -22,6 +22,12 @@ bool IsBesideWhatStands(const Track& track, std::span<const Track> tracks, std::
          });
 }
 
+// Whether something was seen where the track came to, in a third of the looks or more.
+bool WasThere(const Watched& way) {
+  constexpr int kLeastLooks = 3;
+  return way.num_looks >= kLeastLooks && 3 * (way.num_looks - way.num_empty) > way.num_looks;
+}
+
 }  // namespace
 
 Proof::Course Proof::CourseOf(const Track& track, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
@@ -45,6 +51,10 @@ void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2
     const bool is_seen = track.seen != course.seen;
     course.seen = track.seen;
     if (course.is_proven || !is_seen) continue;  // where it is not seen its place is a guess
+    if (WasThere(track.way)) {
+      course = {track.seen, track.position_m, track.seen, track.position_m, true, false, false};
+      continue;
+    }
     const double speed_mps = track.velocity_mps.norm();
     const double seen_s = ToSeconds(track.seen - course.begin);
     const double way_m = (track.position_m - course.begin_m).norm();

@@ -37,6 +37,7 @@ void Step::Run() {
   EndLand();
   Merge();
   EndUnseen();
+  LookAtWays();
   if (is_sight_known_) known_.watched.Add(known_.sight, scan_.end_time);
   Label();
 }

@@ -96,6 +96,7 @@ class Step {
   bool IsClear(std::size_t i) const;
   bool IsAlone(const Followed& track, std::size_t i) const;
   void AskWatched(Followed& track) const;
+  void LookAtWays();
   void Begin();
   void ConfirmWhereLikely(Followed& track, std::size_t i);
   void Confirm(Followed& track);

@@ -54,6 +54,23 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
   Place(track);
 }
 
+// What moves comes to places that were empty. A piece of a quay that is taken for the whole, now this piece and now that, seems to move to places
+// where the quay was before.
+void Step::LookAtWays() {
+  constexpr double kBesideM = 0.5;
+  constexpr double kWayM = 1.0;  // ago: more than kBesideM
+  constexpr double kSlowestMps = 0.1;
+  for (auto& track : known_.tracks) {
+    track.way = {};
+    if (!is_sight_known_ || !track.is_seen_now || !track.body || track.outline_m.empty() || !track.body->IsMoving(params_.moving_probability))
+      continue;
+    const Eigen::Vector2d velocity_mps = track.body->velocity_mps();
+    const auto foremost = std::ranges::max_element(track.outline_m, {}, [&](const Eigen::Vector2d& corner) { return corner.dot(velocity_mps); });
+    const std::chrono::duration<double> way_s(kWayM / std::max(velocity_mps.norm(), kSlowestMps));
+    track.way = known_.watched.At(*foremost, track.top_m, scan_.end_time - std::chrono::duration_cast<std::chrono::microseconds>(way_s), kBesideM);
+  }
+}
+
 // A moving thing is remembered in a frame of its own, until it has stood for a while.
 void Step::ChooseFrame(Followed& track) {
   constexpr double kStandsInFrameS = 2.0;

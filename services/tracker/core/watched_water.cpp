@@ -12,7 +12,6 @@ namespace lookout::tracker {
 
 namespace {
 
-constexpr double kBesidePlaceM = 1.0;    // of the place: a return nearer than this may be the thing
 constexpr double kOverWaterM = 0.1;      // lower beams may meet the water
 constexpr double kLostPacketRad = 0.01;  // to the next column
 constexpr double kCentimetres = 100.0;
@@ -38,7 +37,7 @@ void WatchedWater::Add(const Sight& sight, Utime time) {
   scans_.push_back(std::move(scan));
 }
 
-WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m) {
+WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, double beside_m) {
   const int num_columns = static_cast<int>(scan.unwrapped_rad.size());
   const auto column_at = [&scan](double azimuth_rad) {
     const double first_rad = scan.unwrapped_rad.front();
@@ -63,7 +62,7 @@ WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d&
   column = std::min(column_at(azimuth_rad), num_columns - 1);
   if (std::fabs(WrapToPi(azimuth_rad - scan.unwrapped_rad[static_cast<std::size_t>(column)])) > kLostPacketRad) return Look::kNone;
   const double distance_m = (place_m - pose.translation().head<2>()).norm();
-  if (distance_m > scan.max_range_m || distance_m <= kBesidePlaceM) return Look::kNone;
+  if (distance_m > scan.max_range_m || distance_m <= beside_m) return Look::kNone;
 
   const auto [sine, cosine] = SinCosOf(azimuth_rad);
   const std::size_t num_rings = scan.ring.size();
@@ -79,11 +78,11 @@ WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d&
     const double flat = Hypot(direction.x(), direction.y());
     const double z = pose.translation().z() + distance_m * direction.z() / flat;
     const double range_m = flat / kCentimetres * column_ranges(column)[ring];
-    if (z > kOverWaterM && z < top_m && (range_m == 0.0 || range_m >= distance_m - kBesidePlaceM)) is_looked = true;
-    from_cm[ring] = static_cast<std::uint16_t>(std::clamp(kCentimetres * (distance_m - kBesidePlaceM) / flat, 1.0, kMostCm));
-    width_cm[ring] = static_cast<std::uint16_t>(std::min(kCentimetres * (distance_m + kBesidePlaceM) / flat, kMostCm) - from_cm[ring]);
+    if (z > kOverWaterM && z < top_m && (range_m == 0.0 || range_m >= distance_m - beside_m)) is_looked = true;
+    from_cm[ring] = static_cast<std::uint16_t>(std::clamp(kCentimetres * (distance_m - beside_m) / flat, 1.0, kMostCm));
+    width_cm[ring] = static_cast<std::uint16_t>(std::min(kCentimetres * (distance_m + beside_m) / flat, kMostCm) - from_cm[ring]);
   }
-  const int beside = static_cast<int>(kBesidePlaceM / distance_m / kTwoPi * num_columns);
+  const int beside = static_cast<int>(beside_m / distance_m / kTwoPi * num_columns);
   for (int i = -beside; i <= beside; ++i) {
     const auto ranges_cm = column_ranges((column + i + num_columns) % num_columns);
     bool is_met = false;
@@ -93,12 +92,12 @@ WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d&
   return is_looked ? Look::kEmpty : Look::kNone;
 }
 
-Watched WatchedWater::At(const Eigen::Vector2d& place_m, double top_m, Utime before) const {
+Watched WatchedWater::At(const Eigen::Vector2d& place_m, double top_m, Utime before, double beside_m) const {
   Watched watched;
   for (const auto& scan : scans_) {
     const double before_s = ToSeconds(before - scan.time);
     if (before_s <= 0.0 || before_s > kWatchedS) continue;
-    const auto look = LookAt(scan, place_m, top_m);
+    const auto look = LookAt(scan, place_m, top_m, beside_m);
     if (look != Look::kNone) ++watched.num_looks;
     if (look == Look::kEmpty) ++watched.num_empty;
   }

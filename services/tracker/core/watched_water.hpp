@@ -28,13 +28,15 @@ class WatchedWater {
  public:
   static constexpr double kKeptS = 3.0;
   static constexpr std::size_t kMostScans = 100;
+  static constexpr double kBesidePlaceM = 1.0;
   static constexpr double kWatchedS = 2.0;  // before something came up: long enough to say that there was nothing
 
   /// @param time  of the scan's end; later than all before
   void Add(const Sight& sight, Utime time);
   /// @param top_m   of the thing, above the water
-  /// @param before  end of the scan in which it was seen first: those of the 2 s before it count
-  Watched At(const Eigen::Vector2d& place_m, double top_m, Utime before) const;
+  /// @param before    end of the scan in which it was seen first: those of the 2 s before it count
+  /// @param beside_m  of the place: a return nearer than this may be the thing
+  Watched At(const Eigen::Vector2d& place_m, double top_m, Utime before, double beside_m = kBesidePlaceM) const;
   void Clear() { scans_.clear(); }
 
  private:
@@ -48,7 +50,7 @@ class WatchedWater {
     std::vector<std::uint16_t> range_cm = {};  // [columns x rings] 0: nothing was met
   };
   enum class Look { kNone, kEmpty, kMet };
-  static Look LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m);
+  static Look LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, double beside_m);
 
   std::deque<Scan> scans_;
 };

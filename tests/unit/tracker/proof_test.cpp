@@ -34,6 +34,7 @@ class ProofTest : public ::testing::Test {
       boat_ = BoxAt(1, 0.0, north_m_, {0.0, speed_mps});
       seen_ = is_seen ? time_ : seen_;
       boat_.seen = seen_;
+      boat_.way = way_;
       auto tracks = standing_;
       tracks.push_back(boat_);
       proof_.Update(tracks, shore_m_);
@@ -45,6 +46,7 @@ class ProofTest : public ::testing::Test {
   Utime seen_ = kBegin;
   double north_m_ = 0.0;
   Track boat_;
+  Watched way_;
   std::vector<Track> standing_;
   std::vector<Eigen::Vector2d> shore_m_;
 };
@@ -125,6 +127,32 @@ TEST_F(ProofTest, WhatGoesAlongAQuayIsProvenFartherOn) {
   EXPECT_FALSE(proof_.IsProven(boat_));
   Run(2.5, 2.0);
   EXPECT_TRUE(proof_.IsProven(boat_));
+}
+
+// As a piece of a quay that is taken for the whole, now this and now that, in the middle of nothing else that is known.
+TEST_F(ProofTest, WhatComesToWhereSomethingWasIsAPiece) {
+  way_ = {10, 6};
+  Run(10.0, 4.0);
+  EXPECT_FALSE(proof_.IsProven(boat_));
+  EXPECT_TRUE(proof_.MayBePiece(1));
+  way_ = {10, 10};
+  Run(0.7, 4.0);
+  EXPECT_TRUE(proof_.MayBePiece(1)) << "its way counts from here on";
+  Run(0.6, 4.0);
+  EXPECT_TRUE(proof_.IsProven(boat_));
+}
+
+TEST_F(ProofTest, OfAWayThatWasHardlyLookedAtNothingIsKnown) {
+  way_ = {2, 0};
+  Run(1.3, 4.0);
+  EXPECT_TRUE(proof_.IsProven(boat_));
+}
+
+TEST_F(ProofTest, ACourseThatIsProvenStaysSo) {
+  Run(1.3, 4.0);
+  way_ = {10, 0};
+  Run(3.0, 4.0);
+  EXPECT_TRUE(proof_.IsProven(boat_)) << "it comes to a quay";
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "services/tracker/core/proof.hpp"
 #include "services/tracker/core/tracker.hpp"
 #include "tests/unit/tracker/walls.hpp"
 
@@ -379,6 +380,46 @@ TEST(Situation, MooredBoatsAreOneInEachThirdScan) {
   EXPECT_EQ(story.Reported().size(), 2U);
   ExpectSpeed(story, one, {0.0, 0.0});
   ExpectSpeed(story, other, {0.0, 0.0});
+}
+
+// What is believed of the courses of a story.
+Proof ProofOf(const Story& story) {
+  Proof proof;
+  for (const auto& picture : story.pictures) {
+    for (const auto& [from, to] : picture.merged) proof.Rename(from, to);
+    proof.Update(picture.tracks);
+  }
+  return proof;
+}
+
+// 4 m of a quay are a segment, and the rest is none: the part farther on, by and by.
+TEST(Situation, APieceOfAQuayThatSeemsToRunIsNotBelieved) {
+  constexpr double kSeemsMps = 1.5;
+  const auto story = Follow(90, [](int scan) {
+    const double from_m = -9.0 + kSeemsMps * test::kScanS * scan;
+    return Moment{Box({0.0, 17.0}, 24.0, 3.0, 1.2, 1), [from_m](int, const Eigen::Vector2d& place_m) {
+                    const bool is_in = place_m.x() >= from_m && place_m.x() <= from_m + 4.0;
+                    return Called{is_in ? 1 : 0, false, is_in ? 1 : 0};
+                  }};
+  });
+  const auto piece = story.NameOf(1, 10);
+  ASSERT_GT(piece, 0);
+  EXPECT_GT(story.VelocityOf(piece).norm(), 1.0) << "it seems to run: else this asks nothing";
+  EXPECT_TRUE(ProofOf(story).MayBePiece(piece));
+}
+
+TEST(Situation, ABoatThatRunsAlongAQuayIsBelieved) {
+  const auto story = Follow(90, [](int scan) {
+    const double at_m = -7.0 + 1.5 * test::kScanS * scan;
+    return Moment{Box({0.0, 17.0}, 24.0, 3.0, 1.2, 1) + Box({at_m, 13.7}, 4.0, 2.0, 1.3, 2), AsOneWithLand(false)};
+  });
+  const auto boat = story.NameOf(2, 10);
+  ASSERT_GT(boat, 0);
+  const auto proof = ProofOf(story);
+  EXPECT_FALSE(proof.MayBePiece(boat));
+  const auto track = std::ranges::find(story.pictures.back().tracks, boat, &Track::id);
+  ASSERT_NE(track, story.pictures.back().tracks.end());
+  EXPECT_TRUE(proof.IsProven(*track));
 }
 
 }  // namespace

@@ -154,6 +154,15 @@ TEST(WatchedWater, WasNotEmptyBesideSomething) {
   EXPECT_EQ(memory.At({0.0, 10.0}, 0.5).num_empty, 10);
 }
 
+TEST(WatchedWater, IsEmptyBesideSomethingThatIsFartherOffThanWasAskedFor) {
+  Memory memory;
+  memory.Scans(30, {{.place_m = {0.0, 10.0}}});
+  const auto closely = [&memory](double east_m) { return memory.water.At({east_m, 10.0}, 0.4, memory.now(), 0.5); };
+  EXPECT_EQ(closely(0.7).num_empty, 0);
+  EXPECT_GT(closely(1.1).num_looks, 0);
+  EXPECT_EQ(closely(1.1).num_empty, closely(1.1).num_looks) << "0.7 m off";
+}
+
 TEST(WatchedWater, IsForgotten) {
   Memory memory;
   memory.Scans(30, {});
