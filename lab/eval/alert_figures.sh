@@ -13,4 +13,4 @@ if [ "${1:-}" = long ]; then
     --seeds "${2:-5}" --berth-seconds "${3:-300}" "${@:4}"
 fi
 exec "${judge[@]}" --scenes all families "$berths"/moored.txtpb "$berths"/moored_dense.txtpb "$berths"/moored_fairway.txtpb \
-  --seeds "${1:-3}" --berth-seconds "${2:-400}" --captures "$recordings/second_world" "$recordings/second_world_long"
+  --seeds "${1:-3}" --berth-seconds "${2:-400}" --captures "$recordings/second_world" "$recordings/second_world_long" "${@:3}"
