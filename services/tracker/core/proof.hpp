@@ -20,8 +20,8 @@ namespace lookout::tracker {
 /// moves, now one end of it is seen and now the other. It is proven, slow or fast, when it has besides gone kLeavesM and is off by kTouchM, or has
 /// gone kPassesM; it may be acted on before that, but not before it has gone kLeavesM.
 ///
-/// A boat comes to water that was empty. A track that comes to where beams met something before it can have been there (Track::way) is a piece of what
-/// stands, and its way begins anew; what is proven stays so.
+/// A boat comes to water that was empty. A track that comes to where beams met something before it can have been there (Track::way) is a piece of
+/// what stands, and its way begins anew; what is proven stays so.
 class Proof {
  public:
   static constexpr double kLeastS = 1.0;
