@@ -22,7 +22,7 @@ bool IsBesideWhatStands(const Track& track, std::span<const Track> tracks, std::
          });
 }
 
-// Whether something was seen where the track came to, in a third of the looks or more.
+// Whether something was seen where the track came to, in more than a third of the looks.
 bool WasThere(const Watched& way) {
   constexpr int kLeastLooks = 3;
   return way.num_looks >= kLeastLooks && 3 * (way.num_looks - way.num_empty) > way.num_looks;
@@ -52,7 +52,7 @@ void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2
     course.seen = track.seen;
     if (course.is_proven || !is_seen) continue;  // where it is not seen its place is a guess
     if (WasThere(track.way)) {
-      course = {track.seen, track.position_m, track.seen, track.position_m, true, false, false};
+      course = {track.seen, track.position_m, track.seen, track.position_m, course.is_beside, false, false};
       continue;
     }
     const double speed_mps = track.velocity_mps.norm();
@@ -80,7 +80,12 @@ void Proof::Rename(std::int64_t from_track, std::int64_t to_track) {
   auto moved = courses_.extract(from_track);
   if (!moved) return;
   moved.key() = to_track;
-  courses_.insert(std::move(moved));
+  const auto put = courses_.insert(std::move(moved));
+  if (put.inserted) return;
+  // What one of two that are one has shown, both have.
+  auto& course = put.position->second;
+  course.has_left = course.has_left || put.node.mapped().has_left;
+  course.is_proven = course.is_proven || put.node.mapped().is_proven;
 }
 
 bool Proof::IsProven(const Track& track) const {

@@ -1,5 +1,6 @@
 // How a track moves.
 #include <algorithm>
+#include <limits>
 
 #include "services/tracker/core/step.hpp"
 
@@ -57,18 +58,50 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
 // What moves comes to places that were empty. A piece of a quay that is taken for the whole, now this piece and now that, seems to move to places
 // where the quay was before.
 void Step::LookAtWays() {
-  constexpr double kBesideM = 0.5;
-  constexpr double kWayM = 1.0;  // ago: more than kBesideM
+  constexpr double kWayM = 1.0;  // ago: farther off than returns that count for the place
   constexpr double kSlowestMps = 0.1;
   for (auto& track : known_.tracks) {
     track.way = {};
-    if (!is_sight_known_ || !track.is_seen_now || !track.body || track.outline_m.empty() || !track.body->IsMoving(params_.moving_probability))
-      continue;
+    if (!is_sight_known_ || params_.without.watched_water || !track.is_seen_now || !IsSaidToMove(track)) continue;
     const Eigen::Vector2d velocity_mps = track.body->velocity_mps();
-    const auto foremost = std::ranges::max_element(track.outline_m, {}, [&](const Eigen::Vector2d& corner) { return corner.dot(velocity_mps); });
-    const std::chrono::duration<double> way_s(kWayM / std::max(velocity_mps.norm(), kSlowestMps));
-    track.way = known_.watched.At(*foremost, track.top_m, scan_.end_time - std::chrono::duration_cast<std::chrono::microseconds>(way_s), kBesideM);
+    const double speed_mps = std::max(velocity_mps.norm(), kSlowestMps);
+    const Eigen::Vector2d place_m = ForemostOf(track, velocity_mps / speed_mps);
+    if (HasGoneBefore(track, place_m)) continue;
+    const std::chrono::duration<double> way_s(kWayM / speed_mps);
+    track.way = known_.watched.OfWay(place_m, track.top_m, scan_.end_time - std::chrono::duration_cast<std::chrono::microseconds>(way_s));
   }
+}
+
+bool Step::IsSaidToMove(const Followed& track) const {
+  return track.body && !track.outline_m.empty() && track.body->IsMoving(params_.moving_probability);
+}
+
+// Of the corners that lead the nearest to the lidar: the far side is assumed, and what stands behind it is near.
+Eigen::Vector2d Step::ForemostOf(const Followed& track, const Eigen::Vector2d& ahead) const {
+  constexpr double kLeadsM = 0.5;
+  double most_m = -std::numeric_limits<double>::infinity();
+  for (const auto& corner : track.outline_m) most_m = std::max(most_m, corner.dot(ahead));
+  const Eigen::Vector2d own_m = scan_.own->position_map_m.head<2>();
+  Eigen::Vector2d foremost_m = track.middle_m;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const auto& corner : track.outline_m) {
+    const double range_m = (corner - own_m).norm();
+    if (corner.dot(ahead) < most_m - kLeadsM || range_m >= least_m) continue;
+    least_m = range_m;
+    foremost_m = corner;
+  }
+  return foremost_m;
+}
+
+// Whether another moving thing was at the place in the last seconds: a boat that tows, or leads.
+bool Step::HasGoneBefore(const Followed& track, const Eigen::Vector2d& place_m) const {
+  constexpr double kBesideM = 1.0;
+  return std::ranges::any_of(known_.tracks, [&](const Followed& other) {
+    if (other.id == track.id || !other.is_confirmed || !IsSaidToMove(other)) return false;
+    const Eigen::Vector2d back_m = -WatchedWater::kKeptS * other.body->velocity_mps();
+    const double share = std::clamp((place_m - other.middle_m).dot(back_m) / std::max(back_m.squaredNorm(), 0.01), 0.0, 1.0);
+    return (place_m - other.middle_m - share * back_m).norm() < other.radius_m + kBesideM;
+  });
 }
 
 // A moving thing is remembered in a frame of its own, until it has stood for a while.

@@ -37,7 +37,8 @@ void WatchedWater::Add(const Sight& sight, Utime time) {
   scans_.push_back(std::move(scan));
 }
 
-WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, double beside_m) {
+WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, const Asked& asked) {
+  const double beside_m = asked.beside_m;
   const int num_columns = static_cast<int>(scan.unwrapped_rad.size());
   const auto column_at = [&scan](double azimuth_rad) {
     const double first_rad = scan.unwrapped_rad.front();
@@ -72,32 +73,37 @@ WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d&
   bool is_looked = false;
   std::vector<std::uint16_t> from_cm(num_rings);
   std::vector<std::uint16_t> width_cm(num_rings);
+  std::vector<std::uint8_t> is_asked(num_rings);
   for (std::size_t ring = 0; ring < num_rings; ++ring) {
     const auto& elevation = scan.ring[ring];
     const Eigen::Vector3d direction = pose.linear() * Eigen::Vector3d(elevation.x() * cosine, -elevation.x() * sine, elevation.y());
     const double flat = Hypot(direction.x(), direction.y());
     const double z = pose.translation().z() + distance_m * direction.z() / flat;
     const double range_m = flat / kCentimetres * column_ranges(column)[ring];
-    if (z > kOverWaterM && z < top_m && (range_m == 0.0 || range_m >= distance_m - beside_m)) is_looked = true;
+    const bool is_between = z > kOverWaterM && z < top_m;
+    if (is_between && (range_m == 0.0 || range_m >= distance_m - beside_m)) is_looked = true;
     from_cm[ring] = static_cast<std::uint16_t>(std::clamp(kCentimetres * (distance_m - beside_m) / flat, 1.0, kMostCm));
     width_cm[ring] = static_cast<std::uint16_t>(std::min(kCentimetres * (distance_m + beside_m) / flat, kMostCm) - from_cm[ring]);
+    is_asked[ring] = is_between || !asked.is_by_height;
   }
   const int beside = static_cast<int>(beside_m / distance_m / kTwoPi * num_columns);
+  int num_met = 0;
   for (int i = -beside; i <= beside; ++i) {
     const auto ranges_cm = column_ranges((column + i + num_columns) % num_columns);
-    bool is_met = false;
-    for (std::size_t ring = 0; ring < num_rings; ++ring) is_met |= static_cast<std::uint16_t>(ranges_cm[ring] - from_cm[ring]) <= width_cm[ring];
-    if (is_met) return Look::kMet;
+    for (std::size_t ring = 0; ring < num_rings; ++ring) {
+      num_met += is_asked[ring] & static_cast<int>(static_cast<std::uint16_t>(ranges_cm[ring] - from_cm[ring]) <= width_cm[ring]);
+    }
+    if (num_met >= asked.least_returns) return Look::kMet;
   }
   return is_looked ? Look::kEmpty : Look::kNone;
 }
 
-Watched WatchedWater::At(const Eigen::Vector2d& place_m, double top_m, Utime before, double beside_m) const {
+Watched WatchedWater::At(const Eigen::Vector2d& place_m, double top_m, Utime before, const Asked& asked) const {
   Watched watched;
   for (const auto& scan : scans_) {
     const double before_s = ToSeconds(before - scan.time);
     if (before_s <= 0.0 || before_s > kWatchedS) continue;
-    const auto look = LookAt(scan, place_m, top_m, beside_m);
+    const auto look = LookAt(scan, place_m, top_m, asked);
     if (look != Look::kNone) ++watched.num_looks;
     if (look == Look::kEmpty) ++watched.num_empty;
   }

@@ -28,15 +28,16 @@ class WatchedWater {
  public:
   static constexpr double kKeptS = 3.0;
   static constexpr std::size_t kMostScans = 100;
-  static constexpr double kBesidePlaceM = 1.0;
   static constexpr double kWatchedS = 2.0;  // before something came up: long enough to say that there was nothing
 
   /// @param time  of the scan's end; later than all before
   void Add(const Sight& sight, Utime time);
   /// @param top_m   of the thing, above the water
-  /// @param before    end of the scan in which it was seen first: those of the 2 s before it count
-  /// @param beside_m  of the place: a return nearer than this may be the thing
-  Watched At(const Eigen::Vector2d& place_m, double top_m, Utime before, double beside_m = kBesidePlaceM) const;
+  /// @param before  end of the scan in which it was seen first: those of the 2 s before it count
+  Watched At(const Eigen::Vector2d& place_m, double top_m, Utime before) const { return At(place_m, top_m, before, kComesUp); }
+  /// The same of a place to which a thing came: it was not empty only where two returns or more, neither lower nor higher than the thing, were nearer
+  /// than 0.5 m. A drop is one, and water and what hangs over the place say nothing.
+  Watched OfWay(const Eigen::Vector2d& place_m, double top_m, Utime before) const { return At(place_m, top_m, before, kComesTo); }
   void Clear() { scans_.clear(); }
 
  private:
@@ -50,7 +51,16 @@ class WatchedWater {
     std::vector<std::uint16_t> range_cm = {};  // [columns x rings] 0: nothing was met
   };
   enum class Look { kNone, kEmpty, kMet };
-  static Look LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, double beside_m);
+  // What counts as met.
+  struct Asked {
+    double beside_m;  // of the place: a return nearer than this may be the thing
+    int least_returns;
+    bool is_by_height;  // only between the water and the top of the thing
+  };
+  static constexpr Asked kComesUp{1.0, 1, false};
+  static constexpr Asked kComesTo{0.5, 2, true};
+  Watched At(const Eigen::Vector2d& place_m, double top_m, Utime before, const Asked& asked) const;
+  static Look LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, const Asked& asked);
 
   std::deque<Scan> scans_;
 };

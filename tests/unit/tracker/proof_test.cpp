@@ -142,6 +142,22 @@ TEST_F(ProofTest, WhatComesToWhereSomethingWasIsAPiece) {
   EXPECT_TRUE(proof_.IsProven(boat_));
 }
 
+TEST_F(ProofTest, OfTwoTracksThatAreOneEitherProvesIt) {
+  for (const bool is_first : {false, true}) {
+    SCOPED_TRACE(is_first);
+    proof_.Clear();
+    for (int i = 0; i <= 15; ++i) {
+      auto bow = BoxAt(is_first ? 1 : 2, 0.0, 0.4 * i, {0.0, 4.0});
+      auto stern = BoxAt(is_first ? 2 : 1, 0.0, 0.4 * i - 2.0, {0.0, 4.0});
+      stern.way = {10, 0};
+      bow.seen = stern.seen = kBegin + milliseconds(100 * i);
+      proof_.Update(is_first ? std::vector{bow, stern} : std::vector{stern, bow});
+    }
+    proof_.Rename(2, 1);
+    EXPECT_TRUE(proof_.IsProven(BoxAt(1, 0.0, 6.0, {0.0, 4.0})));
+  }
+}
+
 TEST_F(ProofTest, OfAWayThatWasHardlyLookedAtNothingIsKnown) {
   way_ = {2, 0};
   Run(1.3, 4.0);

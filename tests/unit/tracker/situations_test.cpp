@@ -422,5 +422,16 @@ TEST(Situation, ABoatThatRunsAlongAQuayIsBelieved) {
   EXPECT_TRUE(proof.IsProven(*track));
 }
 
+// The second comes to where the first was a second ago.
+TEST(Situation, ABoatThatIsTowedIsBelieved) {
+  const auto story = Follow(90, [](int scan) {
+    const double at_m = -7.0 + 2.0 * test::kScanS * scan;
+    return Moment{Box({at_m, 12.0}, 3.0, 1.6, 1.3, 1) + Box({at_m - 5.0, 12.0}, 3.0, 1.6, 1.3, 2), AsOne(false)};
+  });
+  const auto towed = story.NameOf(2, 10);
+  ASSERT_GT(towed, 0);
+  EXPECT_FALSE(ProofOf(story).MayBePiece(towed));
+}
+
 }  // namespace
 }  // namespace lookout::tracker::situations
