@@ -95,12 +95,12 @@ Eigen::Vector2d Step::ForemostOf(const Followed& track, const Eigen::Vector2d& a
 
 // Whether another moving thing was at the place in the last seconds: a boat that tows, or leads.
 bool Step::HasGoneBefore(const Followed& track, const Eigen::Vector2d& place_m) const {
-  constexpr double kBesideM = 1.0;
+  constexpr double kOfWakeM = 1.0;
   return std::ranges::any_of(known_.tracks, [&](const Followed& other) {
     if (other.id == track.id || !other.is_confirmed || !IsSaidToMove(other)) return false;
     const Eigen::Vector2d back_m = -WatchedWater::kKeptS * other.body->velocity_mps();
     const double share = std::clamp((place_m - other.middle_m).dot(back_m) / std::max(back_m.squaredNorm(), 0.01), 0.0, 1.0);
-    return (place_m - other.middle_m - share * back_m).norm() < other.radius_m + kBesideM;
+    return (place_m - other.middle_m - share * back_m).norm() < other.radius_m + kOfWakeM;
   });
 }
 
