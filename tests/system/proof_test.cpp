@@ -338,11 +338,29 @@ std::int64_t CounterOfTracker(const Payloads& log, std::string_view name) {
 // Where its process begins anew the tracker knows nothing of before, and its ids begin anew; the replay does so at the same scan.
 class ProofOfARestart : public Proof, public ::testing::WithParamInterface<std::pair<std::string, int>> {};
 
+// Whether a process was killed after it had sent what it took in and before it had sent its answer: the replay has the answer. Outside of the
+// promise.
+bool WasKilledBeforeAnAnswer(const std::string& victim, const Payloads& live, const Payloads& again) {
+  const std::map<std::string, std::vector<std::string>> answers{
+      {"tracker", {}}, {"lidar", {"LIDAR_SCAN", "LIDAR_CLOCK"}}, {"navigator", {"GNSS_FIX", "ATTITUDE", "POSE"}}};
+  return std::ranges::any_of(answers.at(victim), [&](const auto& channel) { return Count(again, channel) == Count(live, channel) + 1; });
+}
+
 TEST_P(ProofOfARestart, IsReplayedSo) {
   const auto& [victim, signal] = GetParam();
-  const auto live = WithoutLoss([&, &who = victim, by = signal](const std::string& attempt) { return RunWithARestart(attempt, who, by); },
-                                {"recorder lost TRACKS", "recorder lost ALERTS", "ais lost TRACKS"});  // that nobody sent
-  ASSERT_FALSE(HasFailure());
+  Payloads live;
+  Payloads again;
+  for (int attempt = 1; attempt <= kMaxAttempts; ++attempt) {
+    const auto name = std::to_string(attempt);
+    live = WithoutLoss([&, &who = victim, by = signal](const std::string& run) { return RunWithARestart(name + "-" + run, who, by); },
+                       {"recorder lost TRACKS", "recorder lost ALERTS", "ais lost TRACKS"});  // that nobody sent
+    ASSERT_FALSE(HasFailure());
+    const auto replay = RunProgram({Bin("replay"), "--config", "config", "--in", log_.string(), "--out", "again"}, "replay.out");
+    ASSERT_EQ(replay.exit_code, 0) << replay.output;
+    again = ReadLog("again");
+    if (!WasKilledBeforeAnAnswer(victim, live, again)) break;
+    std::printf("attempt %d: the replay has an answer that the %s did not live to send\n", attempt, victim.c_str());
+  }
   if (victim == "tracker") {
     EXPECT_EQ(NumBegins(live), 2U);
     EXPECT_LT(Count(live, "ALERTS"), Count(live, "LIDAR_CLOCK") - 3) << "nobody was there for some scans";
@@ -350,9 +368,7 @@ TEST_P(ProofOfARestart, IsReplayedSo) {
     EXPECT_EQ(NumBegins(live), 1U);
     EXPECT_EQ(CounterOfTracker(live, "runs_begun"), 1);
   }
-  const auto replay = RunProgram({Bin("replay"), "--config", "config", "--in", log_.string(), "--out", "again"}, "replay.out");
-  ASSERT_EQ(replay.exit_code, 0) << replay.output;
-  ExpectSameMessages(live, ReadLog("again"));
+  ExpectSameMessages(live, again);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracker, ProofOfARestart,

@@ -74,51 +74,63 @@ echo "$twins pairs of tracks within a metre"
 [ "$twins" -le 1 ] || fail "things have two tracks"
 
 # Live, and the replay of its log.
-mkdir live
-cp -r two live/config
-cd live
-# The log holds the run from its first mark on only where the recorder listens before the navigator begins.
-for process in recorder tracker georeferencer navigator odometer segmenter; do
-  "$bin/lookout-$process" --config config >"$process.txt" 2>&1 &
-  pids+=($!)
-  for _ in {1..200}; do
-    [ "$process" = recorder ] && ! compgen -G 'logs/*.lcmlog*' >/dev/null || break
-    sleep 0.1
-  done
-done
-sleep 2
-lidars=()
-for process in lidar lidar_2; do
-  "$bin/lookout-$process" --config config >"$process.txt" 2>&1 &
-  pids+=($!)
-  lidars+=($!)
-done
-sleep 1
-"$bin/lookout-sim" --config config --scene lake --seed 101 --seconds 18 --udp 127.0.0.1 >sim.txt 2>&1 &
-sim=$!
-pids+=("$sim")
-sleep 6
-kill -KILL "${lidars[1]}"
-wait "${lidars[1]}" 2>/dev/null || true
-sleep 4
-"$bin/lookout-lidar_2" --config config >lidar_2_again.txt 2>&1 &
-lidars[1]=$!
-pids+=("${lidars[1]}")
-wait "$sim" || { cat sim.txt; fail "lookout-sim --udp"; }
-sleep 2
 end() { kill -TERM "$1"; wait "$1" || fail "a process ended with $?"; }
-end "${lidars[0]}"
-end "${lidars[1]}"
-sleep 1
-for i in 4 3 5 2 1 0; do end "${pids[$i]}"; sleep 0.3; done
-pids=()
-log=$(ls logs/*.lcmlog)
-"$bin/lookout-replay" --config config --in "$log" --out replayed.log >replayed.txt 2>replayed.err || { cat replayed.err; fail "replay of the live log"; }
-cat replayed.txt
-for channel in LIDAR_SCAN LIDAR_SCAN_2 SEGMENTS SEGMENTS_2 OBSTACLES TRACKS; do
-  grep -q "^$channel " replayed.txt || fail "no $channel in the live run"
+run_live() {  # FOLDER: sets log
+  mkdir "$work/$1"
+  cp -r "$work/two" "$work/$1/config"
+  cd "$work/$1"
+  # The log holds the run from its first mark on only where the recorder listens before the navigator begins.
+  local process
+  for process in recorder tracker georeferencer navigator odometer segmenter; do
+    "$bin/lookout-$process" --config config >"$process.txt" 2>&1 &
+    pids+=($!)
+    for _ in {1..200}; do
+      [ "$process" = recorder ] && ! compgen -G 'logs/*.lcmlog*' >/dev/null || break
+      sleep 0.1
+    done
+  done
+  sleep 2
+  local lidars=()
+  for process in lidar lidar_2; do
+    "$bin/lookout-$process" --config config >"$process.txt" 2>&1 &
+    pids+=($!)
+    lidars+=($!)
+  done
+  sleep 1
+  "$bin/lookout-sim" --config config --scene lake --seed 101 --seconds 18 --udp 127.0.0.1 >sim.txt 2>&1 &
+  local sim=$!
+  pids+=("$sim")
+  sleep 6
+  kill -KILL "${lidars[1]}"
+  wait "${lidars[1]}" 2>/dev/null || true
+  sleep 4
+  "$bin/lookout-lidar_2" --config config >lidar_2_again.txt 2>&1 &
+  lidars[1]=$!
+  pids+=("${lidars[1]}")
+  wait "$sim" || { cat sim.txt; fail "lookout-sim --udp"; }
+  sleep 2
+  end "${lidars[0]}"
+  end "${lidars[1]}"
+  sleep 1
+  local i
+  for i in 4 3 5 2 1 0; do end "${pids[$i]}"; sleep 0.3; done
+  pids=()
+  log=$(ls "$PWD"/logs/*.lcmlog)
+  "$bin/lookout-replay" --config config --in "$log" --out replayed.log >replayed.txt 2>replayed.err || { cat replayed.err; fail "replay of the live log"; }
+  cat replayed.txt
+  for channel in LIDAR_SCAN LIDAR_SCAN_2 SEGMENTS SEGMENTS_2 OBSTACLES TRACKS; do
+    grep -q "^$channel " replayed.txt || fail "no $channel in the live run"
+  done
+}
+# A process that was killed after it had sent the packets of a scan and before the scan: the replay has the scan. Outside of the promise, so another
+# attempt follows. Anything else that differs is a fault.
+is_killed_before_its_scan() { awk '$1 == "LIDAR_SCAN_2" { found = ($2 + 1 == $3 && $5 == 0 && $6 == 1) } END { exit !found }' diff.txt; }
+for attempt in 1 2 3; do
+  run_live "live_$attempt"
+  "$bin/lookout-diff" "$log" replayed.log >diff.txt 2>&1 && break
+  head -n 40 diff.txt
+  is_killed_before_its_scan && [ "$attempt" -lt 3 ] || fail "the replay of the live run differs"
 done
-"$bin/lookout-diff" "$log" replayed.log >diff.txt 2>&1 || { head -n 40 diff.txt; fail "the replay of the live run differs"; }
 echo "the replay of the live run is the same"
 
 # The second was dead for 4 s: said once, and taken back.
