@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "services/tracker/core/beside.hpp"
+#include "services/tracker/core/watched_water.hpp"
 
 namespace lookout::tracker {
 
@@ -20,12 +21,6 @@ bool IsBesideWhatStands(const Track& track, std::span<const Track> tracks, std::
   return IsWithinAny(track, shore_m, gap_m) || std::ranges::any_of(tracks, [&track, gap_m](const Track& other) {
            return other.id != track.id && Stands(other) && IsWithin(track, other, gap_m);
          });
-}
-
-// Whether something was seen where the track came to, in more than a third of the looks.
-bool WasThere(const Watched& way) {
-  constexpr int kLeastLooks = 3;
-  return way.num_looks >= kLeastLooks && 3 * (way.num_looks - way.num_empty) > way.num_looks;
 }
 
 }  // namespace

@@ -97,9 +97,8 @@ class Step {
   bool IsAlone(const Followed& track, std::size_t i) const;
   void AskWatched(Followed& track) const;
   void LookAtWays();
-  bool IsSaidToMove(const Followed& track) const;
   Eigen::Vector2d ForemostOf(const Followed& track, const Eigen::Vector2d& ahead) const;
-  bool HasGoneBefore(const Followed& track, const Eigen::Vector2d& place_m) const;
+  static bool HasGoneBefore(const Followed& leader, const Eigen::Vector2d& place_m);
   void Begin();
   void ConfirmWhereLikely(Followed& track, std::size_t i);
   void Confirm(Followed& track);

@@ -1,6 +1,8 @@
 // How a track moves.
 #include <algorithm>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "services/tracker/core/step.hpp"
 
@@ -60,20 +62,33 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
 void Step::LookAtWays() {
   constexpr double kWayM = 1.0;  // ago: farther off than returns that count for the place
   constexpr double kSlowestMps = 0.1;
+  for (auto& track : known_.tracks) track.way = {};
+  if (!is_sight_known_ || params_.without.watched_water) return;
+  std::vector<const Followed*> leaders;
+  std::vector<std::pair<Followed*, Eigen::Vector2d>> doubted;  // and their foremost places
   for (auto& track : known_.tracks) {
-    track.way = {};
-    if (!is_sight_known_ || params_.without.watched_water || !track.is_seen_now || !IsSaidToMove(track)) continue;
+    if (!track.is_seen_now || track.outline_m.empty() || !track.body || !track.body->IsMoving(params_.moving_probability)) continue;
     const Eigen::Vector2d velocity_mps = track.body->velocity_mps();
     const double speed_mps = std::max(velocity_mps.norm(), kSlowestMps);
     const Eigen::Vector2d place_m = ForemostOf(track, velocity_mps / speed_mps);
-    if (HasGoneBefore(track, place_m)) continue;
     const std::chrono::duration<double> way_s(kWayM / speed_mps);
     track.way = known_.watched.OfWay(place_m, track.top_m, scan_.end_time - std::chrono::duration_cast<std::chrono::microseconds>(way_s));
+    if (WasThere(track.way)) {
+      doubted.emplace_back(&track, place_m);
+    } else if (track.is_confirmed) {
+      leaders.push_back(&track);
+    }
   }
-}
-
-bool Step::IsSaidToMove(const Followed& track) const {
-  return track.body && !track.outline_m.empty() && track.body->IsMoving(params_.moving_probability);
+  // Where a boat was that leads or tows, its follower comes to; and others behind that. Two pieces of a quay do not excuse each other.
+  for (std::size_t i = 0; i < leaders.size(); ++i) {
+    std::erase_if(doubted, [&](const auto& follower) {
+      auto* const track = follower.first;
+      if (!HasGoneBefore(*leaders[i], follower.second)) return false;
+      track->way = {};
+      if (track->is_confirmed) leaders.push_back(track);
+      return true;
+    });
+  }
 }
 
 // Of the corners that lead the nearest to the lidar: the far side is assumed, and what stands behind it is near.
@@ -93,15 +108,13 @@ Eigen::Vector2d Step::ForemostOf(const Followed& track, const Eigen::Vector2d& a
   return foremost_m;
 }
 
-// Whether another moving thing was at the place in the last seconds: a boat that tows, or leads.
-bool Step::HasGoneBefore(const Followed& track, const Eigen::Vector2d& place_m) const {
+// Whether it was at the place in the last seconds.
+bool Step::HasGoneBefore(const Followed& leader, const Eigen::Vector2d& place_m) {
   constexpr double kOfWakeM = 1.0;
-  return std::ranges::any_of(known_.tracks, [&](const Followed& other) {
-    if (other.id == track.id || !other.is_confirmed || !IsSaidToMove(other)) return false;
-    const Eigen::Vector2d back_m = -WatchedWater::kKeptS * other.body->velocity_mps();
-    const double share = std::clamp((place_m - other.middle_m).dot(back_m) / std::max(back_m.squaredNorm(), 0.01), 0.0, 1.0);
-    return (place_m - other.middle_m - share * back_m).norm() < other.radius_m + kOfWakeM;
-  });
+  const Eigen::Vector2d back_m = -WatchedWater::kKeptS * leader.body->velocity_mps();
+  const Eigen::Vector2d off_m = place_m - leader.middle_m;
+  const double share = std::clamp(off_m.dot(back_m) / std::max(back_m.squaredNorm(), 0.01), 0.0, 1.0);
+  return (off_m - share * back_m).norm() < leader.radius_m + kOfWakeM;
 }
 
 // A moving thing is remembered in a frame of its own, until it has stood for a while.

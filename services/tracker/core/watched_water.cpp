@@ -24,6 +24,11 @@ constexpr double kMostCameUp = 5.0;
 
 double CameUpLogOdds(const Watched& watched, double seen_share) { return std::min(kMostCameUp, -watched.num_empty * Log(1.0 - seen_share)); }
 
+bool WasThere(const Watched& watched) {
+  constexpr int kLeastLooks = 3;
+  return watched.num_looks >= kLeastLooks && 3 * (watched.num_looks - watched.num_empty) > watched.num_looks;
+}
+
 void WatchedWater::Add(const Sight& sight, Utime time) {
   while (!scans_.empty() && ToSeconds(time - scans_.front().time) > kKeptS) scans_.pop_front();
   if (scans_.size() >= kMostScans) scans_.pop_front();

@@ -23,6 +23,9 @@ struct Watched {
 /// @param seen_share  of scans in which it is seen, of those in which it could be
 double CameUpLogOdds(const Watched& watched, double seen_share);
 
+/// Whether something was met at the place in more than a third of the looks, of three or more.
+bool WasThere(const Watched& watched);
+
 /// The beams of the last scans, as little of them as this question needs: 2 bytes a shot. A VLP-16 has 300 000 shots a second, so 1.9 MB.
 class WatchedWater {
  public:

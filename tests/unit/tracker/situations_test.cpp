@@ -422,15 +422,24 @@ TEST(Situation, ABoatThatRunsAlongAQuayIsBelieved) {
   EXPECT_TRUE(proof.IsProven(*track));
 }
 
-// The second comes to where the first was a second ago.
-TEST(Situation, ABoatThatIsTowedIsBelieved) {
+// Each comes to where the one before it was a second ago.
+TEST(Situation, BoatsThatAreTowedInARowAreBelieved) {
   const auto story = Follow(90, [](int scan) {
-    const double at_m = -7.0 + 2.0 * test::kScanS * scan;
-    return Moment{Box({at_m, 12.0}, 3.0, 1.6, 1.3, 1) + Box({at_m - 5.0, 12.0}, 3.0, 1.6, 1.3, 2), AsOne(false)};
+    Moment moment;
+    for (int i = 0; i < 3; ++i) {
+      const double at_m = -5.0 + 2.0 * test::kScanS * scan - 5.0 * i;
+      moment.walls = moment.walls + Box({at_m, 12.0}, 3.0, 1.6, 1.3, i + 1);
+    }
+    moment.segmenter = AsOne(false);
+    return moment;
   });
-  const auto towed = story.NameOf(2, 10);
-  ASSERT_GT(towed, 0);
-  EXPECT_FALSE(ProofOf(story).MayBePiece(towed));
+  const auto proof = ProofOf(story);
+  for (int thing = 1; thing <= 3; ++thing) {
+    SCOPED_TRACE(thing);
+    const auto boat = story.NameOf(thing, 10);
+    ASSERT_GT(boat, 0);
+    EXPECT_FALSE(proof.MayBePiece(boat));
+  }
 }
 
 }  // namespace
