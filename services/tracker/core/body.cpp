@@ -54,9 +54,6 @@ constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
 constexpr double kSpeedSdsOn = 1.5;
 constexpr double kMovesAfterS = 0.6;
-// Steady motion explains so much of how the place of an end varies, which is seen in so many scans.
-constexpr double kMotionShare = 0.5;
-constexpr double kLeastEndWeight = 3.0;
 // Deviation of the velocity of a thing that is not where it was expected. It rather shows another part, since waves show one and hide the other, than
 // moves; a thing that goes on the same way moves. Chosen on seeds 21 to 24 of the own scenes.
 constexpr double kJumpMps = 0.1;
@@ -135,43 +132,6 @@ Eigen::Matrix2d Body::velocity_covariance() const {
   return moving_covariance_.block<2, 2>(2, 2) + Eigen::Matrix2d::Identity() * shown_mps * shown_mps;
 }
 
-void Body::KeepEnds(const Measured& measured, double dt_s) {
-  if (moved_s_ >= kTurnsAfterS) {  // the directions turn with the thing
-    ends_ = {};
-    return;
-  }
-  const double kept = std::max(0.0, 1.0 - dt_s / kMotionMemoryS);
-  for (std::size_t i = 0; i < kDirections; ++i) {
-    auto& end = ends_[i];
-    end.weight *= kept;
-    if (measured.kind[i] != Measured::Kind::kEdge) continue;
-    const double share = 1.0 / (end.weight + 1.0);
-    const double off_m = measured.reach_m[i] - end.mean_m;
-    const double off_s = age_s_ - end.mean_s;
-    end.mean_m += share * off_m;
-    end.mean_s += share * off_s;
-    end.variance_m2 = (1.0 - share) * (end.variance_m2 + share * off_m * off_m);
-    end.covariance_ms = (1.0 - share) * (end.covariance_ms + share * off_m * off_s);
-    end.variance_s2 = (1.0 - share) * (end.variance_s2 + share * off_s * off_s);
-    end.weight += 1.0;
-  }
-}
-
-// Whether the end that leads and the end that trails, as far as they are seen, both move along. One that comes and goes, as the low bow of a kayak,
-// or grows, as a quay that comes into sight, moves the middle of what is seen, but the other end stays.
-bool Body::DoEndsMove() const {
-  const Eigen::Vector2d velocity = velocity_mps();
-  const auto directions = SideDirections();
-  const auto ahead = std::ranges::max_element(directions, {}, [&](const auto& direction) { return direction.dot(velocity); }) - directions.begin();
-  const auto leads = static_cast<std::size_t>(ahead);
-  return std::ranges::all_of(std::array{leads, Opposite(leads)}, [&](std::size_t i) {
-    const auto& end = ends_[i];
-    if (end.weight < kLeastEndWeight) return true;
-    const bool is_along = end.covariance_ms * directions[i].dot(velocity) > 0.0;
-    return is_along && end.covariance_ms * end.covariance_ms > kMotionShare * end.variance_m2 * end.variance_s2;
-  });
-}
-
 double Body::outline_sd_m() const {
   const double first = 1.0 + (kFirstOutline - 1.0) * std::max(0.0, 1.0 - age_s_ / kFirstOutlineS);
   return first * (kOutlineSdM + kOutlineSdPerSize * size_m());
@@ -207,7 +167,6 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   const double heading_m = kHeadingSdRad * range_m;
   const Eigen::Matrix2d staying_m2 = Eigen::Matrix2d::Identity() * (outline_m * outline_m) + heading_m * heading_m * across * across.transpose();
   const double times = std::max(1.0, shift.misfit) * std::max(1.0, 2.0 * kOutlineS / dt_s);
-  KeepEnds(measured, dt_s);
   Decide(measured_m, shift.covariance_m2 + times * staying_m2, dt_s);
 
   if (!grows) return;
@@ -267,8 +226,7 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   const double speed_sd = speed > 0.0 ? std::sqrt(velocity.dot(velocity_covariance() * velocity)) / speed : 0.0;
   // Where the outline jumps the way that the track goes, its velocity is less sure for a while, and it moves all the same.
   const bool is_loosened = stands_out_ && goes_on_ && since_jump_s_ < kLoosenedS;
-  stands_out_ =
-      speed > kLeastSpeedMps && (stands_out_ || DoEndsMove()) && (is_loosened || speed > (stands_out_ ? kSpeedSdsOn : kSpeedSds) * speed_sd);
+  stands_out_ = speed > kLeastSpeedMps && (is_loosened || speed > (stands_out_ ? kSpeedSdsOn : kSpeedSds) * speed_sd);
   moved_s_ = stands_out_ && prefers_moving_ ? moved_s_ + dt_s : 0.0;
   if (moved_s_ < kMovesAfterS) moving_probability_ = std::min(moving_probability_, 0.5);
 }
@@ -284,7 +242,6 @@ void Body::Translate(const Eigen::Vector2d& by_m) {
   standing_ += by_m;
   first_m_ += by_m;
   moving_.head<2>() += by_m;
-  ends_ = {};
   for (auto& measured : last_measured_) measured += by_m;
 }
 

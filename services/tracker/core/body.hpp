@@ -94,15 +94,6 @@ class Body {
     bool is_seen = false;
   };
   using Reaches = std::array<Side, kDirections>;
-  // How far it is seen to reach in one direction, from the origin of the map, and when: moments over the last seconds.
-  struct End {
-    double weight = 0.0;  // in scans
-    double mean_m = 0.0;
-    double mean_s = 0.0;
-    double variance_m2 = 0.0;
-    double covariance_ms = 0.0;
-    double variance_s2 = 0.0;
-  };
   // A part of a thing that is seen by itself, as its bow, or its crew.
   struct Part {
     Reaches sides;
@@ -126,8 +117,6 @@ class Body {
   double size_m() const;
   double outline_sd_m() const;
   Eigen::Matrix2d velocity_covariance() const;
-  void KeepEnds(const Measured& measured, double dt_s);
-  bool DoEndsMove() const;
   void Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s);
   void AssumeBy(const Measured& measured);
   void TakePart(const Measured& measured, double dt_s);
@@ -154,7 +143,6 @@ class Body {
   double parts_s_ = 0.0;                                  // for how long only parts were seen
   std::array<double, kDirections> parts_reach_m_{};       // of these, from the position
   double age_s_ = 0.0;                                    // since the outline was first seen
-  std::array<End, kDirections> ends_;                     // until it has moved for a while
   Eigen::Vector2d mean_off_m_ = Eigen::Vector2d::Zero();  // of the moving one, of the last second
   // Jitter of the measured position from scan to scan, by its second differences: steady motion is none.
   std::array<Eigen::Vector2d, 2> last_measured_{};

@@ -161,14 +161,7 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Reaches& known, const 
   for (std::size_t i = 0; i < kDirections; ++i) {
     const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - known[i].reach_m;
     if (!measured.Tells(i, beyond_m)) continue;
-    double variance_m2 = measured.variance_m2[i] + known[i].variance_m2;
-    if (measured.short_m > 0.0) {
-      // The thing is farther by so much at least, and up to where the other end of the part would be beyond its other end.
-      const std::size_t j = Opposite(i);
-      const double room_m = std::max(0.0, known[i].reach_m + known[j].reach_m - measured.reach_m[i] - measured.reach_m[j]);
-      variance_m2 += room_m * room_m / 3.0;
-    }
-    const double weight = 1.0 / variance_m2;
+    const double weight = 1.0 / (measured.variance_m2[i] + known[i].variance_m2);
     information += weight * directions[i] * directions[i].transpose();
     sum += weight * beyond_m * directions[i];
     ++num_edges;

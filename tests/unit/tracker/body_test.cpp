@@ -343,49 +343,6 @@ TEST(Body, CovarianceIsHonest) {
   EXPECT_LT(velocity_sum / num_moving, 1.5);
 }
 
-// A kayak that points at the lidar, from a rolling boat: beams pass over its low bow in one scan and not in the next, from the first on. Where the
-// ends were not asked, 42 of 100 were said to move.
-TEST(Body, WhoseNearEndComesAndGoesRarelyMoves) {
-  std::mt19937_64 random(9);
-  std::uniform_real_distribution<double> share(0.0, 1.0);
-  constexpr int kRuns = 400;
-  int num_moved = 0;
-  for (int run = 0; run < kRuns; ++run) {
-    std::optional<Body> body;
-    bool has_moved = false;
-    for (int scan = 0; scan < 40; ++scan) {
-      const double near_m = 13.0 + 2.0 * share(random);
-      const Box seen{.middle_m = {0.5 * (near_m + 17.3), 0.0}, .length_m = 17.3 - near_m, .width_m = 0.8};
-      const auto outline_m = Shaken(seen.SeenFrom({0.0, 0.0}), 0.02, random);
-      if (!body) body.emplace(outline_m, Sides{}, kNoise, 15.0);
-      if (scan == 0) continue;
-      body->Predict(kScanS);
-      body->Update(outline_m, {}, kNoise, 15.0, true);
-      has_moved = has_moved || body->IsMoving(kMoving);
-    }
-    num_moved += has_moved ? 1 : 0;
-  }
-  EXPECT_LT(num_moved, 3 * kRuns / 10);
-}
-
-// A boat at 5 m/s is seen whole, not at all for a second, then its stern, then whole again: where the stern lies is at least so far from where it
-// was.
-TEST(Body, OfWhichAPartIsSeenElsewhereHasMovedSoFarAtLeast) {
-  const double speed_mps = 5.0;
-  Box boat{.middle_m = {-5.0, 60.0}, .length_m = 5.0};
-  const auto see = [&](Body& body, const Box& box) { body.Update(box.SeenFrom({0.0, 0.0}), {}, kNoise, 60.0, true); };
-  Body body(boat.SeenFrom({0.0, 0.0}), {}, kNoise, 60.0);
-  for (int scan = 1; scan < 20; ++scan) {
-    boat.middle_m.x() += speed_mps * kScanS;
-    body.Predict(kScanS);
-    if (scan == 12) see(body, {.middle_m = boat.middle_m - Eigen::Vector2d(1.8, 0.0), .length_m = 1.4});
-    if (scan <= 2 || scan > 12) see(body, boat);
-  }
-  EXPECT_TRUE(body.IsMoving(kMoving));
-  EXPECT_NEAR(body.velocity_mps().x(), speed_mps, 0.5);
-  EXPECT_LT((body.center_m() - boat.middle_m).norm(), 0.5);
-}
-
 TEST(Body, FrameKeepsItsTurnWhereTheOutlineIsAnother) {
   std::mt19937_64 random(8);
   Box box{{-10.0, 20.0}, 0.0};
