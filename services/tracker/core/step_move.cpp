@@ -67,7 +67,11 @@ void Step::LookAtWays() {
   std::vector<const Followed*> leaders;
   std::vector<std::pair<Followed*, Eigen::Vector2d>> doubted;  // and their foremost places
   for (auto& track : known_.tracks) {
-    if (!track.is_seen_now || track.outline_m.empty() || !track.body || !track.body->IsMoving(params_.moving_probability)) continue;
+    if (track.outline_m.empty() || !track.body || !track.body->IsMoving(params_.moving_probability)) continue;
+    if (!track.is_seen_now) {  // hidden by its tow, or missed
+      if (track.is_confirmed) leaders.push_back(&track);
+      continue;
+    }
     const Eigen::Vector2d velocity_mps = track.body->velocity_mps();
     const double speed_mps = std::max(velocity_mps.norm(), kSlowestMps);
     const Eigen::Vector2d place_m = ForemostOf(track, velocity_mps / speed_mps);
