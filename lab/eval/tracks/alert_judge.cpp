@@ -204,7 +204,10 @@ AlertEvent AlertJudge::EventOf(const AlertScan& scan, const JudgedAlert& alert, 
   event.told_bearing_rad = alert.bearing_rad;
   event.text = alert.text;
   event.fault = FaultOf(alert, found, verdict);
-  if (alert.track) event.told_speed_mps = alert.track->velocity_mps.norm();
+  if (alert.track) {
+    event.told_speed_mps = alert.track->velocity_mps.norm();
+    event.existence_probability = alert.track->existence_probability;
+  }
   if (found == nullptr) return event;
   event.thing = found->thing->name;
   event.kind = found->thing->kind;

@@ -53,6 +53,7 @@ bool AlertRun::OnTracks(const tracks_t& message) {
     auto& place = place_of_[track.id];
     place.position_m = {track.position_map_m[0], track.position_map_m[1]};
     place.velocity_mps = {track.velocity_map_mps[0], track.velocity_map_mps[1]};
+    place.existence_probability = static_cast<double>(track.existence_probability);
     place.outline_m.clear();
     for (std::size_t i = 0; i < track.outline_east_m.size(); ++i) {
       place.outline_m.emplace_back(static_cast<double>(track.outline_east_m[i]), static_cast<double>(track.outline_north_m[i]));

@@ -17,6 +17,7 @@ struct AlertTrackPlace {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   Polygon outline_m;                                       // empty: the position alone is known
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();  // as TRACKS have it: 0 of a standing track
+  double existence_probability = 0.0;
 };
 
 /// One alert of one message, as much of it as is judged: ToJudgedAlert makes it.

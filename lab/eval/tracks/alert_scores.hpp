@@ -47,6 +47,7 @@ struct AlertEvent {
   AlertFault fault = AlertFault::kNone;
   double true_speed_mps = std::numeric_limits<double>::quiet_NaN();  // over ground
   double told_speed_mps = std::numeric_limits<double>::quiet_NaN();
+  double existence_probability = std::numeric_limits<double>::quiet_NaN();  // of its track
   std::string text;
 };
 

@@ -185,15 +185,39 @@ std::vector<NamedTable> AlertTablesOf(const std::vector<AlertWorld>& worlds) {
 }
 
 std::string AlertEventHeader() {
-  return CsvRow({"scene", "seed", "second", "verdict", "level", "cause", "alert_id", "track_id", "thing", "kind", "true_distance_m",
-                 "true_approach_m", "told_distance_m", "told_bearing_deg", "delay_s", "why", "true_speed_mps", "told_speed_mps", "text"});
+  return CsvRow({"scene",           "seed",
+                 "second",          "verdict",
+                 "level",           "cause",
+                 "alert_id",        "track_id",
+                 "thing",           "kind",
+                 "true_distance_m", "true_approach_m",
+                 "told_distance_m", "told_bearing_deg",
+                 "delay_s",         "why",
+                 "true_speed_mps",  "told_speed_mps",
+                 "existence",       "text"});
 }
 
 std::string AlertEventRow(const std::string& scene, std::uint64_t seed, const AlertEvent& event) {
-  return CsvRow({scene, std::to_string(seed), Number(event.second, 1), event.what, event.level, event.cause, Number(event.alert_id),
-                 Number(event.track_id), event.thing, event.kind, NumberOrNothing(event.distance_m, 2), NumberOrNothing(event.approach_m, 2),
-                 NumberOrNothing(event.told_distance_m, 2), NumberOrNothing(RadToDeg(event.told_bearing_rad), 0), NumberOrNothing(event.delay_s, 1),
-                 std::string(NameOf(event.fault)), NumberOrNothing(event.true_speed_mps, 1), NumberOrNothing(event.told_speed_mps, 1), event.text});
+  return CsvRow({scene,
+                 std::to_string(seed),
+                 Number(event.second, 1),
+                 event.what,
+                 event.level,
+                 event.cause,
+                 Number(event.alert_id),
+                 Number(event.track_id),
+                 event.thing,
+                 event.kind,
+                 NumberOrNothing(event.distance_m, 2),
+                 NumberOrNothing(event.approach_m, 2),
+                 NumberOrNothing(event.told_distance_m, 2),
+                 NumberOrNothing(RadToDeg(event.told_bearing_rad), 0),
+                 NumberOrNothing(event.delay_s, 1),
+                 std::string(NameOf(event.fault)),
+                 NumberOrNothing(event.true_speed_mps, 1),
+                 NumberOrNothing(event.told_speed_mps, 1),
+                 NumberOrNothing(event.existence_probability, 2),
+                 event.text});
 }
 
 }  // namespace lookout::eval

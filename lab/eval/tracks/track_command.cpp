@@ -131,7 +131,7 @@ std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string&
 
 // Of one run.
 void WriteEvents(const std::vector<TrackRow>& rows, std::uint64_t seed, const Truth& truth, std::ostream& out) {
-  constexpr std::array<std::string_view, 5> kNames{"missed", "false", "switch", "moving", "standing"};
+  constexpr std::array<std::string_view, 6> kNames{"missed", "false", "switch", "moving", "standing", "approach"};
   for (const auto& [scene, row] : rows) {
     for (const auto& event : row.scores.events) {
       const auto name_of = [&truth](std::int64_t thing) { return thing == 0 ? std::string() : truth.objects().at(static_cast<int>(thing)).name; };

@@ -262,6 +262,8 @@ void ScoreApproaches(const History& history, const ApproachLimits& limits, Track
     if (std::isnan(stated.cpa_m)) stated = ApproachOf(own.outline_m, own.velocity_mps, OutlineOf(*track), track->velocity_mps);
     scores.cpa_error_m.Add(std::abs(stated.cpa_m - truth.cpa_m));
     scores.tcpa_error_s.Add(std::abs(stated.tcpa_s - truth.tcpa_s));
+    scores.events.push_back({TrackEvent::What::kApproach, utime_us, thing->id, thing->num_returns, track->id, track->position_m, 0,
+                             std::abs(stated.cpa_m - truth.cpa_m), (track->velocity_mps - thing->velocity_mps).norm()});
   }
 }
 

@@ -25,7 +25,7 @@ struct ApproachLimits {
 /// Errors in a scan, for people who look for the reason: those that cost MOTA, standing things that are said to move, and moving ones that are said
 /// to stand.
 struct TrackEvent {
-  enum class What { kMissed, kFalse, kSwitch, kMoving, kStanding };
+  enum class What { kMissed, kFalse, kSwitch, kMoving, kStanding, kApproach };
   What what = What::kMissed;
   std::int64_t utime_us = 0;
   int thing = 0;                                         // 0 = none
@@ -36,7 +36,7 @@ struct TrackEvent {
   // none.
   std::int64_t nearest = 0;
   double nearest_gap_m = 0.0;
-  double speed_mps = 0.0;  // as the track says; of a thing that is said to stand, the true one
+  double speed_mps = 0.0;  // as the track says; of a thing that is said to stand, the true one; of an approach, the error of the velocity
 };
 
 /// Probabilities, and whether it came so, in ten bins.
