@@ -47,7 +47,6 @@ std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_dista
   auto sectors = NearestFirst(look, max_distance_m);
   std::vector<MavPoint> points;
   if (sectors.empty()) {
-    if (!IsAnywhereLooked(look)) return points;
     points.push_back(head);
     points.back().x_m = max_distance_m + 1.0;
   }
@@ -66,14 +65,16 @@ std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_dista
 void MavlinkOutput::SendLook(const Told& told) {
   if (told.look == nullptr) return;
   const auto& look = *told.look;
+  // An autopilot may take an unknown sector for a clear one, and a point says nothing of the sectors beside it: without a direction into which
+  // somebody looked the outlines alone would hide all else. Silence it takes for "no data".
+  if (!IsAnywhereLooked(look)) return;
+  TellWhetherSomebodyLooks(told);
   const double max_distance_m = params().mavlink.max_distance_m;
   if (params().mavlink.form == MavlinkForm::kPoints) {
     const auto most_points = std::max<std::size_t>(room_bytes() / MavlinkWriter::kPointFrameBytes, 1);
     for (const auto& point : ToMavPoints(look, told.look_time, max_distance_m, most_points)) Send(writer_.ObstacleDistance3d(point));
     return;
   }
-  // A message that knows nothing would make a receiver think that somebody looks.
-  if (!IsAnywhereLooked(look) && NearestFirst(look, max_distance_m).empty()) return;
   Send(writer_.ObstacleDistance(ToMavSectors(look, told.look_time, max_distance_m)));
 }
 

@@ -15,8 +15,8 @@ namespace lookout::plotter {
 /// nothing is within the distance is clear (max_distance + 1) where somebody looked, else unknown.
 MavSectors ToMavSectors(const Look& look, Utime time, double max_distance_m);
 
-/// The nearest place of each sector, nearest first, at most `most_points`; where none is within the distance and somebody looked, one beyond it,
-/// which empties a receiver's fence.
+/// Of a look in which somebody looked: the nearest place of each sector, nearest first, at most `most_points`; where none is within the distance, one
+/// beyond it, which empties a receiver's fence.
 std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_distance_m, std::size_t most_points);
 
 class MavlinkOutput : public Output {
@@ -29,6 +29,7 @@ class MavlinkOutput : public Output {
  private:
   void SendOwnShip(const Told& /*told*/) override {}
   void SendTargets(const Told& /*told*/) override {}
+  /// Nothing where nobody looked into any direction. Before the first distances goes the text that the look-out begins or is back.
   void SendLook(const Told& told) override;
   /// And the heartbeat.
   void SendNotices(const Told& told) override;

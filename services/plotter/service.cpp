@@ -343,7 +343,7 @@ HealthReport Service::Report() const {
     report.Degrade("POSE and TRACKS are not of one time: no targets are sent");
   }
   if (MayTellLook() && sight_lost_ && !IsFresh(sight_lost_)) {
-    report.Degrade("LIDAR_SCAN and SEGMENTS of TRACKS do not come, or POSE does not reach over them: no direction is told as clear");
+    report.Degrade("LIDAR_SCAN and SEGMENTS of TRACKS do not come, or POSE does not reach over them: no distances are sent");
   }
   if (numbers_.num_without() > 0) report.Degrade(fmt::format("{} targets without a number: 00 to 99 are used up", numbers_.num_without()));
   for (const auto& output : outputs_) {

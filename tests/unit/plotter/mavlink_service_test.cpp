@@ -68,6 +68,39 @@ TEST_F(MavlinkService, IsSilentWhileAnAlertSaysThatNobodyLooks) {
   EXPECT_TRUE(Last());
 }
 
+// A boat is ahead and TRACKS, ALERTS and POSE come, but no scan does: distances went on while the text said that none are sent.
+TEST_F(MavlinkService, SendsNoDistanceBetweenTheTextsThatNoneAreSentAndThatTheyAreBack) {
+  for (const auto form : {MavlinkForm::kSectors, MavlinkForm::kPoints}) {
+    output_.mavlink.form = form;
+    host_us_ = kStartUs;
+    Start();
+    tracks_ = {TrackOf(4, Box(Ahead(1, 10.0, 0.0), 2.0, 2.0, -heading_rad_))};
+    for (int i = 0; i < 60; ++i) {
+      sends_scan_ = i < 10 || i >= 40;
+      sends_labels_ = i < 10 || i >= 25;
+      NextScan();
+    }
+    bool is_told_to_look = false;
+    int num_distances = 0;
+    for (const auto& frame : Frames()) {
+      if (frame.message_id == support::kStatusTextId) is_told_to_look = frame.text() != "Lookout: no look-out, no distances are sent";
+      if (frame.message_id != support::kObstacleDistanceId && frame.message_id != support::kObstacleDistance3dId) continue;
+      EXPECT_TRUE(is_told_to_look);
+      ++num_distances;
+    }
+    EXPECT_GE(num_distances, 30);
+    EXPECT_EQ(Texts(), (std::vector<std::string>{"Lookout: the look-out begins", "Lookout: no look-out, no distances are sent",
+                                                 "Lookout: the look-out is back"}));
+    // A receiver takes 0.5 s of silence for "no data".
+    link_->sent.clear();
+    sends_scan_ = false;
+    Run(30);
+    EXPECT_TRUE(Frames(support::kObstacleDistanceId).empty());
+    EXPECT_TRUE(Frames(support::kObstacleDistance3dId).empty());
+    EXPECT_EQ(Frames(support::kHeartbeatId).back().At<std::uint8_t>(7), 5);  // MAV_STATE_CRITICAL
+  }
+}
+
 // An autopilot needs no position of ours; but it gets no word of clear water where no scan comes.
 TEST_F(MavlinkService, IsHealthyWithoutAPositionAndNotWithoutTheScan) {
   pose_status_ = pose_t::STATUS_UNKNOWN;
