@@ -15,9 +15,9 @@ namespace lookout::plotter {
 /// nothing is within the distance is clear (max_distance + 1) where somebody looked, else unknown.
 MavSectors ToMavSectors(const Look& look, Utime time, double max_distance_m);
 
-/// Of a look in which somebody looked: the nearest place of each sector, nearest first, at most `most_points`; where none is within the distance, one
-/// beyond it, which empties a receiver's fence.
-std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_distance_m, std::size_t most_points);
+/// Of a look in which somebody looked: the nearest place of each sector, nearest first; where none is within the distance, one beyond it, which
+/// empties a receiver's fence.
+std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_distance_m);
 
 class MavlinkOutput : public Output {
  public:
@@ -29,7 +29,8 @@ class MavlinkOutput : public Output {
  private:
   void SendOwnShip(const Told& /*told*/) override {}
   void SendTargets(const Told& /*told*/) override {}
-  /// Nothing where nobody looked into any direction. Before the first distances goes the text that the look-out begins or is back.
+  /// Nothing where nobody looked into any direction. Of points as many as leave a serial port within 0.1 s, what waits there included. Before the
+  /// first distances goes the text that the look-out begins or is back.
   void SendLook(const Told& told) override;
   /// And the heartbeat.
   void SendNotices(const Told& told) override;

@@ -96,6 +96,7 @@ class Output {
   void SendSurely(std::string message, const std::string& subject = {});
   static constexpr std::size_t kMostWaiting = 2000;
   std::size_t room_bytes() const { return link_->room_bytes(); }
+  std::chrono::microseconds delay() const { return link_->delay(); }
   void CountRefused() { ++num_refused_; }
 
  private:

@@ -1,6 +1,7 @@
 // A way out of this computer: a socket, a device.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,9 @@ class Link {
   /// Bytes that may be sent now without falling behind: of a serial port by its speed; of a connection the free room of its buffer here, of several
   /// clients that of the quickest; over UDP the bytes that a receiver's buffer takes at once.
   virtual std::size_t room_bytes() const = 0;
+
+  /// After which a message that is sent now begins to leave: of a serial port the time that its unsent bytes take; 0 where nothing tells.
+  virtual std::chrono::microseconds delay() const { return std::chrono::microseconds(0); }
 
   /// Counts a message that was not made since nobody could be sent to.
   virtual void NoteUnsent() {}

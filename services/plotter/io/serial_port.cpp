@@ -55,15 +55,21 @@ class SerialPort final : public ReopeningPort {
 
   std::size_t room_bytes() const override {
     if (!is_open()) return 0;
-    // By its speed, and, where the port itself is slower, by its unsent bytes.
-    const double room = std::min(room_bytes_, max_room_bytes_ - static_cast<double>(serial_->num_waiting()));
-    return static_cast<std::size_t>(std::max(room, 0.0));
+    return static_cast<std::size_t>(std::max(max_room_bytes_ - unsent_bytes(), 0.0));
+  }
+
+  std::chrono::microseconds delay() const override {
+    if (!is_open()) return {};
+    return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::duration<double>(unsent_bytes() * kBitsPerByte / baud_));
   }
 
  private:
   static constexpr double kBitsPerByte = 10;  // 8N1: a start bit, 8 data bits, a stop bit
   // Room for half a second; at the lowest speeds for the longest line (of NMEA 2000; of NMEA 0183 it has 82 bytes).
   static constexpr double kMaxLineBytes = 256;
+
+  // By its speed, and, where the port itself is slower, by what it holds.
+  double unsent_bytes() const { return std::max(max_room_bytes_ - room_bytes_, static_cast<double>(serial_->num_waiting())); }
 
   std::shared_ptr<Connection> Open(std::string& fault) override {
     const int descriptor = io::OpenSerialDevice(device_, baud_, O_RDWR, fault);

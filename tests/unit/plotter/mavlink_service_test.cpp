@@ -154,5 +154,27 @@ TEST_F(MavlinkService, SendsPointsInPlaceOfSectors) {
   }
 }
 
+// 72 points of 40 bytes ten times a second are 2.5 times what 115200 baud carry. They filled the port: each was 0.5 s old when it left.
+TEST_F(MavlinkService, SendsAsManyPointsAsTheCableCarriesUntilTheNextScan) {
+  output_.mavlink.form = MavlinkForm::kPoints;
+  Start();
+  velocity_mps_ = {0.0, 0.0};
+  turn_radps_ = 0.0;
+  things_ = {Box(Ahead(0, 0.0, 3.0), 40.0, 50.0, -heading_rad_)};
+  link_->bytes_per_s = 11'520.0;
+  Run(2);
+  double least_m = kNothing;
+  for (std::size_t i = 0; i < kNumSectors; ++i) least_m = std::min(least_m, TrueDistance(i, 0.0));
+  for (int i = 0; i < 100; ++i) {
+    link_->sent.clear();
+    NextScan();
+    // The last point leaves within 0.1 s.
+    EXPECT_LE(link_->delay(), std::chrono::milliseconds(104));
+    const auto points = Frames(support::kObstacleDistance3dId);
+    ASSERT_GE(points.size(), 20U);
+    EXPECT_NEAR(std::hypot(points.front().At<float>(4), points.front().At<float>(8)), least_m, 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace lookout::plotter::test

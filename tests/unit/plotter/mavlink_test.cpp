@@ -89,13 +89,13 @@ TEST(MavSectors, SayNearClearAndUnknown) {
   EXPECT_EQ(message.distance_cm[1], 4001);
 }
 
-TEST(MavPoints, ComeNearestFirstWithOneStampAndAsManyAsThereIsRoomFor) {
+TEST(MavPoints, ComeNearestFirstWithOneStamp) {
   auto look = LookedAllRound();
   look.sectors.AddPoint({30.0, 0.0});
   look.sectors.AddPoint({0.0, 5.0});  // to port
   look.sectors.AddPoint({0.0, -50.0});
   look.sectors.AddPoint({-20.0, -0.1});
-  const auto points = ToMavPoints(look, Utime(std::chrono::milliseconds(77)), 40.0, 100);
+  const auto points = ToMavPoints(look, Utime(std::chrono::milliseconds(77)), 40.0);
   ASSERT_EQ(points.size(), 3U);
   EXPECT_EQ(points[0].y_m, -5.0);  // y is to starboard
   EXPECT_EQ(points[1].x_m, -20.0);
@@ -104,12 +104,11 @@ TEST(MavPoints, ComeNearestFirstWithOneStampAndAsManyAsThereIsRoomFor) {
     EXPECT_EQ(point.time_ms, 77U);
     EXPECT_EQ(point.max_distance_m, 40.0);
   }
-  EXPECT_EQ(ToMavPoints(look, Utime(), 40.0, 2).size(), 2U);
 }
 
 // ArduPilot keeps the points of the stamp before until one of another stamp comes: one that is too far to be taken.
 TEST(MavPoints, AreOneBeyondTheDistanceWhereNothingIs) {
-  const auto points = ToMavPoints(LookedAllRound(), Utime(), 40.0, 100);
+  const auto points = ToMavPoints(LookedAllRound(), Utime(), 40.0);
   ASSERT_EQ(points.size(), 1U);
   EXPECT_EQ(points.front().x_m, 41.0);
 }

@@ -91,6 +91,22 @@ TEST_F(SerialLinkTest, HasRoomForWhatItsSpeedCarries) {
   EXPECT_EQ(Of("dropped"), 0);
 }
 
+TEST_F(SerialLinkTest, TellsWhenItsUnsentBytesHaveLeft) {
+  const support::PseudoTerminal pty;
+  pty.PlugInAs(path_);
+  Open(9600);  // 960 bytes/s
+  ASSERT_TRUE(Until([&] { return IsOpen() && link_->delay() == 0us; }));
+  link_->Send(std::string(240, 'a'));
+  EXPECT_GT(link_->delay(), 200ms);
+  EXPECT_LE(link_->delay(), 250ms);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(Until([&] {
+    pty.Read();
+    return link_->delay() == 0us;
+  }));
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, 200ms);
+}
+
 TEST_F(SerialLinkTest, DropsWhatItHasNoRoomFor) {
   const support::PseudoTerminal pty;
   pty.PlugInAs(path_);
