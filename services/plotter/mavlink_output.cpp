@@ -119,6 +119,17 @@ void MavlinkOutput::SendNotices(const Told& told) {
   }
 }
 
+Commands MavlinkOutput::Read(const std::string& message, const Told& /*told*/) {
+  num_heartbeats_ += reader_.CountHeartbeats(message);
+  return {};
+}
+
+std::vector<Counter> MavlinkOutput::counters() const {
+  auto counters = link().counters();
+  counters.push_back({heartbeats_name_, num_heartbeats_});
+  return counters;
+}
+
 void MavlinkOutput::SendAnew() {
   heartbeat_sent_.reset();
   told_looks_.reset();

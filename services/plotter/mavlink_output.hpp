@@ -4,6 +4,9 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "services/plotter/core/mavlink.hpp"
 #include "services/plotter/core/notice_schedule.hpp"
@@ -24,7 +27,12 @@ class MavlinkOutput : public Output {
   static constexpr std::chrono::seconds kHeartbeatPeriod{1};
 
   MavlinkOutput(const OutputParams& params, std::unique_ptr<Link> link)
-      : Output(params, std::move(link)), writer_(params.mavlink.system_id, params.mavlink.component_id) {}
+      : Output(params, std::move(link)),
+        writer_(params.mavlink.system_id, params.mavlink.component_id),
+        heartbeats_name_("output_" + params.name + "_heartbeats") {}
+
+  /// Those of the link; output_NAME_heartbeats: of an autopilot, that came back.
+  std::vector<Counter> counters() const override;
 
  private:
   void SendOwnShip(const Told& /*told*/) override {}
@@ -35,6 +43,8 @@ class MavlinkOutput : public Output {
   /// And the heartbeat.
   void SendNotices(const Told& told) override;
   void SendAnew() override;
+  Commands Read(const std::string& message, const Told& told) override;
+  int most_read() const override { return 64; }  // all that waits: an autopilot sends its state by itself
 
   void SendText(MavSeverity severity, std::string_view text);
   void TellWhetherSomebodyLooks(const Told& told);
@@ -43,6 +53,9 @@ class MavlinkOutput : public Output {
   NoticeSchedule notices_;
   std::optional<std::chrono::microseconds> heartbeat_sent_;
   std::optional<bool> told_looks_;
+  MavlinkReader reader_;
+  std::string heartbeats_name_;
+  std::int64_t num_heartbeats_ = 0;
 };
 
 }  // namespace lookout::plotter

@@ -22,7 +22,8 @@ class Link {
   /// dropped once its buffer is full; a message without a receiver is counted.
   virtual void Send(std::string_view message) = 0;
 
-  /// Received messages, complete: lines without CR LF of a stream, datagrams, texts of a WebSocket. At most a bounded number waits; the rest is
+  /// Received messages, complete: lines without CR LF of a stream, datagrams, texts of a WebSocket; of a
+  /// binary stream pieces, as they come. At most a bounded number waits; the rest is
   /// counted.
   virtual std::optional<std::string> Receive() { return std::nullopt; }
 

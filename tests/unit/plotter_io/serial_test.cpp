@@ -43,6 +43,22 @@ TEST_F(SerialLinkTest, SendsRawBytesAndReceivesLines) {
   EXPECT_EQ(settings.c_cflag & (CSIZE | PARENB | CSTOPB), static_cast<tcflag_t>(CS8));
 }
 
+// Of MAVLink each byte counts, line ends and zeros as well.
+TEST_F(SerialLinkTest, ReceivesBytesAsTheyAreWhereNoLinesAreWanted) {
+  const support::PseudoTerminal pty;
+  pty.PlugInAs(path_);
+  link_ = links_.Serial({.name = "radio", .device = path_.string(), .baud = 115200, .is_binary = true});
+  ASSERT_TRUE(Until([&] { return IsOpen(); })) << link_->fault();
+  const std::string bytes("\xFD\x09\0\0\r\n\x03\x13\xFF", 9);
+  pty.Write(bytes);
+  std::string received;
+  EXPECT_TRUE(Until([&] {
+    while (const auto piece = link_->Receive()) received += *piece;
+    return received.size() >= bytes.size();
+  }));
+  EXPECT_EQ(received, bytes);
+}
+
 TEST_F(SerialLinkTest, OpensAgainAfterItWasUnplugged) {
   auto first = std::make_unique<support::PseudoTerminal>();
   first->PlugInAs(path_);
