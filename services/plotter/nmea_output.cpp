@@ -97,7 +97,7 @@ void NmeaOutput::SendList(const Told& told) {
   constexpr int kHeartbeats = 10;
   constexpr int kLists = 100;
   const auto standing = notices_.Standing();
-  revisions_.Write(standing);
+  revisions_.Write(notices_.Kept());
   const bool is_well = std::ranges::none_of(told.notices, [](const Notice& notice) {
     return notice.cause == Cause::kWatch && (notice.state == NoticeState::kActive || notice.state == NoticeState::kAcknowledged);
   });

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -65,7 +66,12 @@ class NoticeSchedule {
   /// With the next Take.
   void TellAgain(const Notice& notice);
 
-  /// Of the process before: its notices keep their revisions, and one that changed meanwhile has the next. No notice is made of them.
+  /// Those whose revisions the next process needs: standing ones, those that ended within kEndedFor, and those of the process before that were not
+  /// told yet.
+  std::vector<ToldNotice> Kept() const;
+
+  /// Of the process before: its notices keep their revisions, and one that changed meanwhile has the next. No notice is made of them. After kEndedFor
+  /// they are forgotten.
   void Recall(std::span<const ToldNotice> notices);
 
  private:
@@ -87,6 +93,7 @@ class NoticeSchedule {
   Identity identity_;
   std::map<RaisedKey, Sent> sent_;
   std::map<RaisedKey, ToldNotice> recalled_;
+  std::optional<std::chrono::microseconds> first_take_;
   std::vector<Ended> ended_;  // the oldest first
 };
 

@@ -117,6 +117,16 @@ TEST_F(AlfOutput, GoesOnWithItsRevisionsAfterARestart) {
   StartWith(true);
   Run(300'000);
   EXPECT_EQ(link_->With(",B,W,A,LKO,10002,3,2,0,").size(), 1U);
+  // Over, and active again within 10 s, with a restart between.
+  alerts_.clear();
+  Run(300'000);
+  EXPECT_EQ(link_->With(",B,W,N,LKO,10002,3,3,0,").size(), 1U);
+  StartWith(true);
+  Run(300'000);
+  alerts_ = {MakeAlert(3)};
+  Run(300'000);
+  EXPECT_EQ(link_->With(",B,W,V,LKO,10002,3,4,0,").size(), 1U);
+  alerts_[0].state = alert_t::STATE_ACKNOWLEDGED;
   std::ofstream(folder_ / "alerts.txt") << "3 2 damaged";
   StartWith(true);
   Run(300'000);
@@ -135,6 +145,20 @@ TEST_F(AlfOutput, TellsItsOwnWatchApartFromTheTrackers) {
   Run(8'000'000);
   EXPECT_FALSE(link_->With(",N,LKO,10003,999999,").empty());
   EXPECT_TRUE(link_->With(",N,LKO,10003,1,").empty());
+}
+
+// The only word that nobody looks: it can be acknowledged, and not silenced. Nor can a caution, which makes no lasting sound.
+TEST_F(AlfOutput, SilencesWarningsOfThingsAlone) {
+  alerts_ = {MakeAlert(-1), MakeAlert(5)};
+  alerts_[0].cause = alert_t::CAUSE_WATCH;
+  alerts_[1].level = alert_t::LEVEL_CAUTION;
+  Run(300'000);
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10003,1,S,C").size(), 1U);
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10002,5,S,C").size(), 1U);
+  EXPECT_TRUE(ordered_.empty());
+  EXPECT_TRUE(Answers("CAACN,102031.00,LKO,10003,1,A,C").empty());
+  ASSERT_EQ(acknowledged_.size(), 1U);
+  EXPECT_EQ(acknowledged_[0].alert_id, -1);
 }
 
 // Ids begin anew with each process of the tracker: the end of the old alert took off the new one of its number.
