@@ -30,10 +30,10 @@ std::int64_t KeyOf(const Notice& notice) {
 
 RaisedKey RaisedKeyOf(const Notice& notice) { return {KeyOf(notice), notice.raised}; }
 
-int EscalationOf(const Notice& notice, Utime host_time) {
+int EscalationOf(const Notice& notice) {
   constexpr int kMost = 9;
   if (notice.level != Level::kWarning || notice.state != NoticeState::kActive) return 0;
-  const auto count = (host_time - notice.changed) / std::chrono::microseconds(kEscalateAfter);
+  const auto count = notice.unchanged_for / std::chrono::microseconds(kEscalateAfter);
   return count <= 0 ? 0 : static_cast<int>((count - 1) % kMost + 1);
 }
 

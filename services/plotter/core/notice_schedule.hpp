@@ -27,7 +27,7 @@ std::string SubjectOf(const Notice& notice);
 inline constexpr std::chrono::minutes kEscalateAfter{5};
 
 /// How often a warning has been told anew: 0 to 9, and after 9 comes 1. 0 of what wants no acknowledgement.
-int EscalationOf(const Notice& notice, Utime host_time);
+int EscalationOf(const Notice& notice);
 
 /// A notice as it was told last.
 struct ToldNotice {

@@ -109,6 +109,24 @@ TEST_F(AlfOutput, RaisesAgainWhatNobodyAcknowledges) {
   EXPECT_EQ(link_->With(",B,W,A,LKO,10002,3,3,0,").size(), 1U);
 }
 
+// The clock of the host was set ahead by an hour, as by the first fix: each warning was raised again at once.
+TEST_F(AlfOutput, RaisesAgainByTimePassedAndNotByTheClock) {
+  alerts_ = {MakeAlert(3)};
+  Run(60'000'000);
+  host_us_ += 3'600'000'000;
+  Run(60'000'000);
+  EXPECT_TRUE(link_->With(",LKO,10002,3,2,").empty());
+  // A warning that comes up after a step back, the same.
+  host_us_ -= 7'200'000'000;
+  alerts_.push_back(MakeAlert(4));
+  alerts_[1].raised_utime_us = alerts_[1].changed_utime_us = host_us_;
+  Run(290'000'000);
+  EXPECT_FALSE(link_->With(",B,W,V,LKO,10002,3,2,1,").empty());
+  EXPECT_TRUE(link_->With(",LKO,10002,4,2,").empty());
+  Run(20'000'000);
+  EXPECT_FALSE(link_->With(",B,W,V,LKO,10002,4,2,1,").empty());
+}
+
 TEST_F(AlfOutput, GoesOnWithItsRevisionsAfterARestart) {
   alerts_ = {MakeAlert(3)};
   Run(300'000);
@@ -189,6 +207,23 @@ TEST_F(AlfOutput, ListsManyAlertsOverASlowPort) {
   }
   EXPECT_FALSE(link_->With("HBT").empty());
   EXPECT_GE(link_->With("ALC").size(), 8U) << "four alerts in each";
+}
+
+// A list of two sentences waited for room when one of one sentence came: the second of the old one went out behind it.
+TEST_F(AlfOutput, SendsNothingOfAnOldListBehindAShorterOne) {
+  for (int id = 1; id <= 6; ++id) alerts_.push_back(MakeAlert(id));
+  Run(31'000'000);
+  ASSERT_FALSE(link_->With("RAALC,02,02,").empty());
+  link_->sent.clear();
+  link_->room = 0;
+  Run(31'000'000);
+  alerts_.resize(1);
+  Run(31'000'000);
+  EXPECT_TRUE(link_->sent.empty());
+  link_->room = 1'000'000;
+  Run(1'000'000);
+  EXPECT_EQ(link_->With("RAALC,01,01,").size(), 1U);
+  EXPECT_TRUE(link_->With("RAALC,02,").empty());
 }
 
 }  // namespace
