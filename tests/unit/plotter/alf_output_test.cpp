@@ -1,4 +1,5 @@
 // An output that tells of alerts by ALF, with the list, the heartbeat and the commands that belong to it.
+#include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ class AlfOutput : public test::ServiceFixture {
     std::vector<std::unique_ptr<Output>> outputs;
     outputs.push_back(
         std::make_unique<NmeaOutput>(OutputParams{.name = "bridge", .alerts = SentAlerts::kAlf, .takes_acknowledgements = takes_acknowledgements},
-                                     std::move(link), params_.target_period, RevisionFile(folder_ / "alerts.txt")));
+                                     std::move(link), params_.target_period, RevisionFile(revisions_)));
     NewBus();
     bus::Subscribe<order_t>(*bus_, bus::kOrders, [this](const order_t& message) { ordered_.push_back(message); });
     service_ = std::make_unique<Service>(*bus_, params_, std::move(outputs));
@@ -41,6 +42,7 @@ class AlfOutput : public test::ServiceFixture {
   }
 
   support::TempDir folder_;
+  std::filesystem::path revisions_ = folder_ / "alerts.txt";
   test::KeepingLink* link_ = nullptr;
   std::vector<order_t> ordered_;
 };
@@ -224,6 +226,28 @@ TEST_F(AlfOutput, SendsNothingOfAnOldListBehindAShorterOne) {
   Run(1'000'000);
   EXPECT_EQ(link_->With("RAALC,01,01,").size(), 1U);
   EXPECT_TRUE(link_->With("RAALC,02,").empty());
+}
+
+TEST_F(AlfOutput, TellsAFurtherBoatAfterAThousandAlerts) {
+  revisions_.clear();  // a file for each change would take seconds
+  StartWith(true);
+  for (std::int64_t id = 1; id <= 1200; ++id) {
+    link_->room = 1'000'000;
+    alerts_ = {MakeAlert(id)};
+    Run(100'000);
+    Answers("CAACN,102031.00,LKO,10002," + std::to_string(id) + (id % 2 == 0 ? ",A,C" : ",S,C"));
+    if (id % 2 == 0) alerts_[0].state = alert_t::STATE_ACKNOWLEDGED;
+    Run(100'000);
+    alerts_.clear();
+    Run(100'000);
+  }
+  EXPECT_EQ(acknowledged_.size(), 600U);
+  EXPECT_FALSE(ordered_.empty());
+  link_->sent.clear();
+  alerts_ = {MakeAlert(1201)};
+  alerts_[0].raised_utime_us = alerts_[0].changed_utime_us = host_us_;
+  Run(100'000);
+  EXPECT_EQ(link_->With(",B,W,V,LKO,10002,1201,1,0,").size(), 1U);
 }
 
 }  // namespace
