@@ -178,10 +178,7 @@ TEST_F(MavlinkService, SendsAsManyPointsAsTheCableCarriesUntilTheNextScan) {
 
 TEST_F(MavlinkService, CountsTheHeartbeatsOfTheAutopilot) {
   EXPECT_EQ(support::CountOf(*service_, "output_pilot_heartbeats"), 0);
-  std::string heartbeat("\xFD\x09\0\0\0\x01\x01\0\0\0\0\0\0\0\x0B\x03\x51\x04\x03", 19);
-  const auto crc = support::MavlinkCrc(heartbeat.substr(1) + '\x32');
-  heartbeat += static_cast<char>(crc & 0xFF);
-  heartbeat += static_cast<char>(crc >> 8);
+  const auto heartbeat = support::AutopilotHeartbeat();
   link_->received = {heartbeat, "noise", heartbeat.substr(0, 5), heartbeat.substr(5)};
   Wait(100'000);
   EXPECT_EQ(support::CountOf(*service_, "output_pilot_heartbeats"), 2);

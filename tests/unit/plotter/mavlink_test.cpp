@@ -65,20 +65,10 @@ TEST(Mavlink, SendsALongTextInPartsOfWhichTheLastIsNotFull) {
   }
 }
 
-// Of PX4 (12) as system 1, component 1.
-std::string AutopilotHeartbeat(bool is_second, char autopilot = '\x0C') {
-  std::string frame = is_second ? std::string("\xFD\x09\0\0\x07\x01\x01\0\0\0", 10) : std::string("\xFE\x09\x07\x01\x01\0", 6);
-  frame += std::string("\0\0\0\0\x0B", 5) + autopilot + std::string("\0\x04\x03", 3);
-  const auto crc = support::MavlinkCrc(frame.substr(1) + '\x32');
-  frame += static_cast<char>(crc & 0xFF);
-  frame += static_cast<char>(crc >> 8);
-  return frame;
-}
-
 TEST(MavlinkReader, CountsTheHeartbeatsOfAnAutopilotWhereverTheyAreCut) {
   MavlinkWriter own(1, 196);
-  const std::string stream = "boot text\r\n" + AutopilotHeartbeat(true) + own.StatusText(MavSeverity::kInfo, "text").front() + "\xFE\xFD" +
-                             AutopilotHeartbeat(false) + "\xFD" + AutopilotHeartbeat(true) + std::string(30, '\xFE');
+  const std::string stream = "boot text\r\n" + support::AutopilotHeartbeat(true) + own.StatusText(MavSeverity::kInfo, "text").front() + "\xFE\xFD" +
+                             support::AutopilotHeartbeat(false) + "\xFD" + support::AutopilotHeartbeat(true) + std::string(30, '\xFE');
   EXPECT_EQ(MavlinkReader().CountHeartbeats(stream), 3);
   for (std::size_t piece = 1; piece < 40; ++piece) {
     MavlinkReader reader;
@@ -91,9 +81,9 @@ TEST(MavlinkReader, CountsTheHeartbeatsOfAnAutopilotWhereverTheyAreCut) {
 TEST(MavlinkReader, CountsNeitherOthersNorWhatIsDamaged) {
   MavlinkReader reader;
   EXPECT_EQ(reader.CountHeartbeats(MavlinkWriter(1, 196).Heartbeat(MavState::kActive)), 0) << "ours, that came back";
-  EXPECT_EQ(reader.CountHeartbeats(AutopilotHeartbeat(true, '\x08')), 0) << "a ground station";
+  EXPECT_EQ(reader.CountHeartbeats(support::AutopilotHeartbeat(true, '\x08')), 0) << "a ground station";
   for (const bool is_second : {true, false}) {
-    const auto good = AutopilotHeartbeat(is_second);
+    const auto good = support::AutopilotHeartbeat(is_second);
     for (std::size_t i = 0; i < good.size(); ++i) {
       auto bad = good;
       bad[i] = static_cast<char>(bad[i] ^ 0x20);
@@ -108,7 +98,7 @@ TEST(MavlinkReader, CountsNeitherOthersNorWhatIsDamaged) {
     const char byte = state >> 31U != 0 ? '\xFD' : static_cast<char>(state >> 24U);
     reader.CountHeartbeats({&byte, 1});
   }
-  EXPECT_EQ(reader.CountHeartbeats(std::string(300, '\0') + AutopilotHeartbeat(true)), 1);
+  EXPECT_EQ(reader.CountHeartbeats(std::string(300, '\0') + support::AutopilotHeartbeat(true)), 1);
 }
 
 Look LookedAllRound() {
