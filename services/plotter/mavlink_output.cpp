@@ -12,6 +12,8 @@ constexpr double kCmPerM = 100.0;
 // Receivers ignore 0, and what is nearer than min_distance.
 constexpr double kMinDistanceM = 0.01;
 constexpr std::chrono::seconds kPatience(3);
+// A scan's points that a serial port cannot carry before the next scan are old when they leave it.
+constexpr std::chrono::milliseconds kMostDelay(100);
 
 bool IsAnywhereLooked(const Look& look) { return std::ranges::find(look.is_looked, true) != look.is_looked.end(); }
 
@@ -41,17 +43,15 @@ MavSectors ToMavSectors(const Look& look, Utime time, double max_distance_m) {
   return message;
 }
 
-std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_distance_m, std::size_t most_points) {
+std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_distance_m) {
   const MavPoint head{
       .time_ms = static_cast<std::uint32_t>(ToUtimeUs(time) / 1000), .min_distance_m = kMinDistanceM, .max_distance_m = max_distance_m};
-  auto sectors = NearestFirst(look, max_distance_m);
+  const auto sectors = NearestFirst(look, max_distance_m);
   std::vector<MavPoint> points;
   if (sectors.empty()) {
-    if (!IsAnywhereLooked(look)) return points;
     points.push_back(head);
     points.back().x_m = max_distance_m + 1.0;
   }
-  sectors.resize(std::min(sectors.size(), most_points));
   points.reserve(std::max<std::size_t>(sectors.size(), 1));
   for (const auto sector : sectors) {
     auto place_m = look.sectors.nearest_m(sector);
@@ -66,14 +66,18 @@ std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_dista
 void MavlinkOutput::SendLook(const Told& told) {
   if (told.look == nullptr) return;
   const auto& look = *told.look;
+  // An autopilot may take an unknown sector for a clear one, and a point says nothing of the sectors beside it: without a direction into which
+  // somebody looked the outlines alone would hide all else. Silence it takes for "no data".
+  if (!IsAnywhereLooked(look)) return;
+  TellWhetherSomebodyLooks(told);
   const double max_distance_m = params().mavlink.max_distance_m;
   if (params().mavlink.form == MavlinkForm::kPoints) {
-    const auto most_points = std::max<std::size_t>(room_bytes() / MavlinkWriter::kPointFrameBytes, 1);
-    for (const auto& point : ToMavPoints(look, told.look_time, max_distance_m, most_points)) Send(writer_.ObstacleDistance3d(point));
+    for (const auto& point : ToMavPoints(look, told.look_time, max_distance_m)) {
+      if (delay() > kMostDelay || room_bytes() < MavlinkWriter::kPointFrameBytes) return;
+      Send(writer_.ObstacleDistance3d(point));
+    }
     return;
   }
-  // A message that knows nothing would make a receiver think that somebody looks.
-  if (!IsAnywhereLooked(look) && NearestFirst(look, max_distance_m).empty()) return;
   Send(writer_.ObstacleDistance(ToMavSectors(look, told.look_time, max_distance_m)));
 }
 
@@ -113,6 +117,17 @@ void MavlinkOutput::SendNotices(const Told& told) {
     if (is_repeat || notice.state != NoticeState::kActive) continue;
     SendText(notice.level == Level::kWarning ? MavSeverity::kWarning : MavSeverity::kNotice, "Lookout: " + notice.text);
   }
+}
+
+Commands MavlinkOutput::Read(const std::string& message, const Told& /*told*/) {
+  num_heartbeats_ += reader_.CountHeartbeats(message);
+  return {};
+}
+
+std::vector<Counter> MavlinkOutput::counters() const {
+  auto counters = link().counters();
+  counters.push_back({heartbeats_name_, num_heartbeats_});
+  return counters;
 }
 
 void MavlinkOutput::SendAnew() {

@@ -66,7 +66,7 @@ std::vector<Notice> NmeaOutput::AsTold(const Told& told) const {
   std::vector<Notice> notices(told.notices.begin(), told.notices.end());
   for (auto& notice : notices) {
     if (!is_alf || notice.sound != Sound::kSilenced) notice.sound = Sound::kQuiet;
-    if (is_alf) notice.escalation = EscalationOf(notice, told.host_time);
+    if (is_alf) notice.escalation = EscalationOf(notice);
   }
   return notices;
 }
@@ -97,7 +97,7 @@ void NmeaOutput::SendList(const Told& told) {
   constexpr int kHeartbeats = 10;
   constexpr int kLists = 100;
   const auto standing = notices_.Standing();
-  revisions_.Write(standing);
+  revisions_.Write(notices_.Kept());
   const bool is_well = std::ranges::none_of(told.notices, [](const Notice& notice) {
     return notice.cause == Cause::kWatch && (notice.state == NoticeState::kActive || notice.state == NoticeState::kAcknowledged);
   });
@@ -106,6 +106,7 @@ void NmeaOutput::SendList(const Told& told) {
   SendSurely(Hbt(params().target_talker, kListPeriod, is_well, heartbeat_sequence_), "HBT");
   // Each sentence by itself: a slow port has no room for all at once.
   const auto list = Alc(params().target_talker, standing, list_sequence_);
+  DropWaiting("ALC ");  // of the list before, which may have been longer
   for (std::size_t begin = 0, number = 1; begin < list.size(); ++number) {
     const auto end = list.find('\n', begin) + 1;
     SendSurely(list.substr(begin, end - begin), "ALC " + std::to_string(number));

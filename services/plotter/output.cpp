@@ -69,6 +69,10 @@ void Output::SendSurely(std::string message, const std::string& subject) {
   ++num_dropped_;
 }
 
+void Output::DropWaiting(std::string_view subject_begin) {
+  std::erase_if(waiting_, [subject_begin](const WaitingMessage& one) { return one.subject.starts_with(subject_begin); });
+}
+
 bool Output::Send(const std::string& message) {
   if (!waiting_.empty() || link_->room_bytes() < message.size()) return false;
   link_->Send(message);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -94,8 +95,11 @@ class Output {
   ///
   /// @param subject  a waiting message of this subject is replaced; empty: of none
   void SendSurely(std::string message, const std::string& subject = {});
+  /// Those that wait, of subjects that begin so.
+  void DropWaiting(std::string_view subject_begin);
   static constexpr std::size_t kMostWaiting = 2000;
   std::size_t room_bytes() const { return link_->room_bytes(); }
+  std::chrono::microseconds delay() const { return link_->delay(); }
   void CountRefused() { ++num_refused_; }
 
  private:

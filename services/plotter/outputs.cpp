@@ -14,16 +14,18 @@ namespace lookout::plotter {
 namespace {
 
 // `name`: of its counters, which so have none of the names of the service's.
-std::unique_ptr<Link> Open(const std::string& name, const Destination& to, Links& links) {
+std::unique_ptr<Link> Open(const std::string& name, const OutputParams& output, Links& links) {
+  const Destination& to = output.destination;
+  const bool is_mavlink = output.format == Format::kMavlink;
   switch (to.kind) {
     case Destination::Kind::kUdp:
-      return links.Udp({.name = name, .address = to.address, .port = to.port, .interface = to.interface});
+      return links.Udp({.name = name, .address = to.address, .port = to.port, .interface = to.interface, .receives = is_mavlink});
     case Destination::Kind::kTcpServer:
       return links.TcpServer({.name = name, .bind_address = to.address, .port = to.port, .max_clients = to.max_clients});
     case Destination::Kind::kTcpClient:
       return links.TcpClient({.name = name, .address = to.address, .port = to.port});
     case Destination::Kind::kSerial:
-      return links.Serial({.name = name, .device = to.device.string(), .baud = to.baud});
+      return links.Serial({.name = name, .device = to.device.string(), .baud = to.baud, .is_binary = is_mavlink});
     case Destination::Kind::kCan:
       return links.Can({.name = name, .interface = to.interface});
     default:
@@ -61,7 +63,7 @@ std::vector<std::unique_ptr<Output>> OpenOutputs(const Params& params, Links& li
   std::vector<std::unique_ptr<Output>> outputs;
   for (const auto& output : params.outputs) {
     try {
-      outputs.push_back(MakeOutput(params, output, Open("output_" + output.name, output.destination, links)));
+      outputs.push_back(MakeOutput(params, output, Open("output_" + output.name, output, links)));
     } catch (const std::runtime_error& error) {
       throw std::runtime_error("output '" + output.name + "': " + error.what());
     }

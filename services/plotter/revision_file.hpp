@@ -12,8 +12,9 @@
 namespace lookout::plotter {
 
 /// A receiver takes a revision that it knows for what it knows already, so a process that begins must go on where the one before it stopped. The file
-/// holds a line for each alert: id, cause, when it was raised (us since 1970), level, state, sound, escalation, revision. It is whole whenever a
-/// process is killed. Where it cannot be written, revisions begin anew, and alerts are told all the same.
+/// holds a line for each alert that stands or ended within ten minutes: id, cause, when it was raised (us since 1970), level, state, sound,
+/// escalation, revision. It is whole whenever a process is killed. Where it cannot be written, revisions begin anew, and alerts are told all the
+/// same.
 class RevisionFile {
  public:
   /// @param file  empty: nothing is left and nothing found

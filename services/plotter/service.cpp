@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include "services/plotter/core/notice_schedule.hpp"
+
 namespace lookout::plotter {
 
 namespace {
@@ -244,6 +246,17 @@ void Service::ComposeNotices() {
   notices_ = alerts_;
   for (auto& notice : notices_) notice.is_old = !IsFresh(alerts_seen_);
   if (own_notice_) notices_.push_back(*own_notice_);
+  std::map<std::pair<std::int64_t, Utime>, std::chrono::microseconds> since;
+  for (auto& notice : notices_) {
+    const std::pair key(KeyOf(notice), notice.changed);
+    const auto known = unchanged_since_.find(key);
+    // One that was there before this process is as old as the clock says.
+    const auto age = now_ ? std::chrono::duration_cast<std::chrono::microseconds>(*now_ - notice.changed) : 0us;
+    const auto begin = known != unchanged_since_.end() ? known->second : passed_.passed() - std::max(age, 0us);
+    since.emplace(key, begin);
+    notice.unchanged_for = passed_.passed() - begin;
+  }
+  unchanged_since_ = std::move(since);
 }
 
 void Service::StopTargets() {
@@ -343,7 +356,7 @@ HealthReport Service::Report() const {
     report.Degrade("POSE and TRACKS are not of one time: no targets are sent");
   }
   if (MayTellLook() && sight_lost_ && !IsFresh(sight_lost_)) {
-    report.Degrade("LIDAR_SCAN and SEGMENTS of TRACKS do not come, or POSE does not reach over them: no direction is told as clear");
+    report.Degrade("LIDAR_SCAN and SEGMENTS of TRACKS do not come, or POSE does not reach over them: no distances are sent");
   }
   if (numbers_.num_without() > 0) report.Degrade(fmt::format("{} targets without a number: 00 to 99 are used up", numbers_.num_without()));
   for (const auto& output : outputs_) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/bus/bus.hpp"
@@ -89,8 +90,9 @@ class Service {
   GivenNames names_;                // the same
   std::optional<ShipNames> ships_;  // of the last AIS
   std::optional<Notice> own_notice_;
-  std::vector<Notice> notices_;  // alerts_ and own_notice_
-  bool are_told_ = false;        // targets
+  std::vector<Notice> notices_;                                                          // alerts_ and own_notice_
+  std::map<std::pair<std::int64_t, Utime>, std::chrono::microseconds> unchanged_since_;  // by key and change, by passed_
+  bool are_told_ = false;                                                                // targets
   bool was_watched_ = false;
   PassedTime passed_{std::chrono::milliseconds(250)};
   std::optional<Utime> now_;

@@ -42,7 +42,7 @@ void SignalKOutput::SendNotices(const Told& told) {
   std::vector<Notice> notices(told.notices.begin(), told.notices.end());
   for (auto& notice : notices) {
     if (notice.sound == Sound::kSilenced) notice.sound = Sound::kQuiet;
-    notice.escalation = EscalationOf(notice, told.host_time);
+    notice.escalation = EscalationOf(notice);
   }
   for (const auto& [notice, revision, is_repeat] : notices_.Take(notices, told.passed)) {
     const auto key = RaisedKeyOf(notice);

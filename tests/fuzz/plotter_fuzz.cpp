@@ -1,5 +1,5 @@
-// Any bytes as what comes back over an output (lines with a right checksum too, texts of a Signal K server, frames of NMEA 2000), and as texts of
-// alerts: no crash, no sentence longer than it may be, and no flood of answers.
+// Any bytes as what comes back over an output (lines with a right checksum too, texts of a Signal K server, frames of NMEA 2000 and MAVLink), and as
+// texts of alerts: no crash, no sentence longer than it may be, and no flood of answers.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -70,6 +70,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const auto& frame : MavlinkWriter(1, 196).StatusText(MavSeverity::kNotice, text)) {
     if (frame.size() > 66) std::abort();
   }
+  MavlinkReader whole;
+  MavlinkReader bytewise;
+  int num_heartbeats = 0;
+  for (const char byte : text) num_heartbeats += bytewise.CountHeartbeats({&byte, 1});
+  if (whole.CountHeartbeats(text) != num_heartbeats) std::abort();
   const auto echoes = ReadDelta(NoticeDelta(notice, BoatWord(text), {}));
   if (echoes.is_wrong || echoes.echoes.size() != 1 || echoes.echoes[0].is_acknowledged || echoes.echoes[0].is_quiet) std::abort();
   return 0;

@@ -46,6 +46,16 @@ inline std::uint16_t MavlinkCrc(std::string_view bytes) {
   return crc;
 }
 
+/// What an autopilot tells of itself: MAV_AUTOPILOT (12: PX4; 8: none) as system 1, component 1, in a frame of MAVLink 2 or 1.
+inline std::string AutopilotHeartbeat(bool is_second = true, char autopilot = '\x0C') {
+  std::string frame = is_second ? std::string("\xFD\x09\0\0\x07\x01\x01\0\0\0", 10) : std::string("\xFE\x09\x07\x01\x01\0", 6);
+  frame += std::string("\0\0\0\0\x0B", 5) + autopilot + std::string("\0\x04\x03", 3);
+  const auto crc = MavlinkCrc(frame.substr(1) + '\x32');
+  frame += static_cast<char>(crc & 0xFF);
+  frame += static_cast<char>(crc >> 8);
+  return frame;
+}
+
 /// All frames of a text that holds nothing else; a failure of the test where one is wrong.
 inline std::vector<MavlinkFrame> ReadMavlink(std::string_view bytes) {
   struct Kind {

@@ -81,8 +81,10 @@ Findings CheckDisk(const DiskSeen& disk);
 
 /// HEALTH of each process; obstacles; whether there is a look-out, and its alerts.
 Findings CheckProcesses(const Observations& seen);
-/// Of each output of the plotter: whether those to whom it sends take it.
+/// Of each output of the plotter: whether those to whom it sends take it, and whether an autopilot is heard.
 Findings CheckPlotter(const Observations& seen);
+/// Whether AIS is heard where ais.txtpb expects it, and understood. Nothing where neither is.
+Findings CheckAis(const Observations& seen);
 
 /// Who sees the page, whether it has its port, its token, its map and room for the last minutes.
 Findings CheckPage(const Observations& seen);

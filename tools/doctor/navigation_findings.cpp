@@ -147,6 +147,21 @@ std::optional<Finding> CheckDatum(const Observations& seen) {
   return Warning(kGnssSubject, complaint, "correct datum in boat.txtpb, or remove it: then the first fix is the datum");
 }
 
+// Those that the config names one by one: "udp" is open on many boats that have nothing there. One that cannot be opened is told already.
+Findings CheckSilence(const Observations& seen) {
+  Findings findings;
+  for (const auto& connection : seen.config.navigation->connections) {
+    const auto& name = connection.name;
+    const bool is_at_fault = std::ranges::count(seen.navigation.input_faults, name, &std::pair<std::string, std::string>::first) > 0;
+    if (name == "udp" || connection.kind == navigator::Connection::Kind::kTextLog || is_at_fault || seen.navigation.num_by_source.contains(name)) {
+      continue;
+    }
+    findings.push_back(Warning("input", fmt::format("'{}' is silent: nothing came from it in {:.0f} s", name, seen.watched_s),
+                               "its power, cable, baud, address and port; an AIS receiver says nothing where no ship is near"));
+  }
+  return findings;
+}
+
 }  // namespace
 
 Findings CheckNavigation(const Observations& seen) {
@@ -160,6 +175,7 @@ Findings CheckNavigation(const Observations& seen) {
   }
   findings.push_back(CheckFix(seen));
   if (seen.navigation.num_by_source.empty()) return findings;
+  for (auto& silent : CheckSilence(seen)) findings.push_back(std::move(silent));
   if (auto datum = CheckDatum(seen)) findings.push_back(std::move(*datum));
   findings.push_back(CheckHeading(seen));
   if (seen.navigation.pose) findings.push_back(CheckAttitude(*seen.navigation.pose));

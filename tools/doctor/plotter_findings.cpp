@@ -23,7 +23,22 @@ std::int64_t Grown(const ProcessSeen& process, const std::string& name) {
   return CountOf(process.last, name).value_or(0) - CountOf(process.first, name).value_or(0);
 }
 
-Finding CheckOutput(const ProcessSeen& process, const std::string& output) {
+// An autopilot tells of itself once a second over each link that it uses. Nullopt: the output has none.
+std::optional<Finding> CheckAutopilot(const ProcessSeen& process, const std::string& output, double watched_s) {
+  const auto counter = "output_" + output + "_heartbeats";
+  const auto num_heartbeats = CountOf(process.last, counter);
+  if (!num_heartbeats || Grown(process, counter) > 0) return std::nullopt;
+  // HEALTH comes once a second, so a short watch may lie between two heartbeats.
+  constexpr double kLeastWatchS = 4.0;
+  if (*num_heartbeats > 0 && watched_s < kLeastWatchS) return std::nullopt;
+  const auto text = *num_heartbeats == 0 ? "no HEARTBEAT of an autopilot has come back" : "the autopilot's HEARTBEAT has stopped";
+  return Warning(
+      kSubject, "output '" + output + "' sends, but " + text,
+      "whether the autopilot is on; both wires of the cable, its baud and SERIALn_PROTOCOL 2; over UDP its address and port, and a firewall "
+      "that holds its answers back");
+}
+
+Finding CheckOutput(const ProcessSeen& process, const std::string& output, double watched_s) {
   const auto who = "output '" + output + "' ";
   const auto counter = "output_" + output;
   const auto num_clients = CountOf(process.last, counter + "_clients");
@@ -40,11 +55,13 @@ Finding CheckOutput(const ProcessSeen& process, const std::string& output) {
     return Warning(kSubject, who + "takes nothing: " + Count(num_unsent, "message") + " not sent",
                    "the process line above; whether the plotter is on");
   }
+  if (auto silent = CheckAutopilot(process, output, watched_s)) return *silent;
   // Over UDP nobody confirms, but who is off may be told of.
   if (Grown(process, counter + "_unheard") > 0) return Ok(kSubject, who + "sends, but nobody listens there: the receiver is off");
   const auto num_sent = Grown(process, counter + "_sent");
   const auto clients = num_clients ? " to " + Count(*num_clients, "client") : std::string();
-  return Ok(kSubject, who + "sends" + clients + ", " + Count(num_sent, "message") + " taken");
+  const auto* const heard = CountOf(process.last, counter + "_heartbeats") ? ", the autopilot's HEARTBEAT comes" : "";
+  return Ok(kSubject, who + "sends" + clients + ", " + Count(num_sent, "message") + " taken" + heard);
 }
 
 }  // namespace
@@ -59,7 +76,7 @@ Findings CheckPlotter(const Observations& seen) {
     for (const auto& counter : process.last.counters) {
       const std::string_view name = counter.name;
       if (!name.starts_with(kOutput) || !name.ends_with(kSent)) continue;
-      findings.push_back(CheckOutput(process, std::string(name.substr(kOutput.size(), name.size() - kOutput.size() - kSent.size()))));
+      findings.push_back(CheckOutput(process, std::string(name.substr(kOutput.size(), name.size() - kOutput.size() - kSent.size())), seen.watched_s));
     }
   }
   return findings;

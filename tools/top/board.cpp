@@ -222,13 +222,20 @@ void Board::MarkShips() {
   constexpr std::int64_t kMostApartUs = 2'000'000;
   if (!tracks_) return;
   for (auto& line : tracks_->lines) line.ship.clear();
+  auto& unseen = tracks_->unseen_ships;
+  unseen.clear();
   if (!ais_ || ais_->tracks_begin_utime_us != tracks_begin_utime_us_ || std::abs(ais_->utime_us - tracks_utime_us_) > kMostApartUs) return;
   for (const auto& ship : ais_->ships) {
+    const auto name = ship.name.empty() ? words::MmsiText(ship.mmsi) : Printable(ship.name);
+    if (ship.state == ais_ship_t::STATE_AIS_ONLY) unseen.push_back({name, ship.range_m, ship.bearing_rad});
     if (ship.state != ais_ship_t::STATE_TRACKED) continue;
     const auto line = std::ranges::lower_bound(tracks_->lines, ship.track_id, {}, &TrackLine::id);
     if (line == tracks_->lines.end() || line->id != ship.track_id) continue;
-    line->ship = ship.name.empty() ? words::MmsiText(ship.mmsi) : Printable(ship.name);
+    line->ship = name;
   }
+  std::erase_if(unseen, [](const UnseenShip& ship) { return !std::isfinite(ship.range_m); });
+  std::ranges::stable_sort(unseen, {}, &UnseenShip::range_m);
+  unseen.resize(std::min(unseen.size(), TrackPicture::kMaxUnseenShips));
 }
 
 // Of the alerts of a track the gravest; alerts come sorted.

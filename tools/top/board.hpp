@@ -103,13 +103,22 @@ struct TrackLine : track_t {
   std::string ship = {};  // of AIS, that it is for sure: her name, else her MMSI; empty: none
 };
 
+/// A ship that AIS tells of, that the lidar should see, and that is no track.
+struct UnseenShip {
+  std::string name;  // else her MMSI
+  float range_m = 0.0F;
+  float bearing_rad = 0.0F;  // from the bow clockwise
+};
+
 /// Tracks of the newest scan that came whole.
 struct TrackPicture {
-  std::vector<TrackLine> lines;  // confirmed and coasting ones, at most kMaxLines, the nearest; by id, so that rows keep their place
-  std::int64_t num_tracks = 0;   // confirmed and coasting
-  TimePoint time;                // when its last message came
+  std::vector<TrackLine> lines;               // confirmed and coasting ones, at most kMaxLines, the nearest; by id, so that rows keep their place
+  std::int64_t num_tracks = 0;                // confirmed and coasting
+  TimePoint time;                             // when its last message came
+  std::vector<UnseenShip> unseen_ships = {};  // at most kMaxUnseenShips, the nearest first
 
   static constexpr std::size_t kMaxLines = 50;
+  static constexpr std::size_t kMaxUnseenShips = 3;
 };
 
 class Board {

@@ -216,9 +216,15 @@ Span TrackSpan(std::size_t index, const TrackLine& line, int width) {
 
 std::vector<Span> TrackRows(const TrackPicture& tracks, View view) {
   std::vector<Span> rows;
+  // Above the tracks: of many tracks the last are cut off.
+  for (const auto& ship : tracks.unseen_ships) {
+    rows.push_back(
+        {fmt::format("AIS only, no track: {} at {:.1f} m, {} deg from the bow", ship.name, ship.range_m, Degrees(double{ship.bearing_rad})),
+         Style::kWarning});
+  }
   const std::size_t most = view.height > 0 ? tracks.lines.size() : kTextObstacles;
   for (std::size_t i = 0; i < std::min(tracks.lines.size(), most); ++i) rows.push_back(TrackSpan(i, tracks.lines[i], view.width));
-  if (rows.empty()) rows.push_back({"no track", Style::kPlain});
+  if (tracks.lines.empty()) rows.push_back({"no track", Style::kPlain});
   return rows;
 }
 

@@ -68,8 +68,17 @@ std::optional<WholePayload> PartJoiner::AddPart(Utime time, const Key& key, cons
   }
   auto found = open_.find(key);
   if (part.number == 1) {
-    if (found != open_.end()) ++counts_["ais_parts_out_of_order"];  // the one before never came to its end
-    found = open_.insert_or_assign(key, Open{time, part.num_parts, 0, {}}).first;
+    Open begun{time, part.num_parts, 0, {}, std::string(part.armour), false};
+    if (found != open_.end()) {
+      // The one before never came to its end. One transmission that two receivers heard begins alike.
+      const auto& before = found->second;
+      begun.is_mixed = time - before.time <= kMixed && (before.is_mixed || before.head != part.armour);
+      ++(begun.is_mixed ? counts_["ais_parts_mixed"] : counts_["ais_parts_out_of_order"]);
+    }
+    found = open_.insert_or_assign(key, std::move(begun)).first;
+  } else if (found != open_.end() && found->second.is_mixed) {
+    ++counts_["ais_parts_mixed"];
+    return std::nullopt;
   } else if (found == open_.end() || found->second.num_parts != part.num_parts || found->second.num_here + 1 != part.number) {
     ++counts_["ais_parts_out_of_order"];
     if (found != open_.end()) open_.erase(found);

@@ -32,7 +32,53 @@ std::uint16_t Crc(std::string_view bytes, std::uint8_t extra) {
   return crc;
 }
 
+std::uint8_t ByteAt(std::string_view bytes, std::size_t index) { return static_cast<std::uint8_t>(bytes[index]); }
+
+// The head of a frame: its size, and where the number of the message stands.
+struct Head {
+  std::size_t num_bytes;
+  std::size_t id_at;
+};
+constexpr Head kHead1{6, 5};
+constexpr Head kHead2{10, 7};
+
 }  // namespace
+
+int MavlinkReader::CountHeartbeats(std::string_view bytes) {
+  constexpr std::uint8_t kMagic1 = 0xFE;
+  constexpr std::size_t kPayloadBytes = 9;
+  constexpr std::size_t kAutopilotAt = 5;
+  constexpr std::uint8_t kCrcExtra = 50;
+  rest_ += bytes;
+  const std::string_view all = rest_;
+  int num_heartbeats = 0;
+  std::size_t at = 0;
+  while (at < all.size()) {
+    const auto frame = all.substr(at);
+    const bool is_second = ByteAt(frame, 0) == kMagic;
+    if (!is_second && ByteAt(frame, 0) != kMagic1) {
+      ++at;
+      continue;
+    }
+    const Head head = is_second ? kHead2 : kHead1;
+    if (frame.size() < head.num_bytes) break;
+    const std::size_t num_payload = ByteAt(frame, 1);
+    const bool is_heartbeat = num_payload > 0 && (is_second ? num_payload <= kPayloadBytes : num_payload == kPayloadBytes) &&
+                              frame.substr(head.id_at, head.num_bytes - head.id_at).find_first_not_of('\0') == std::string_view::npos;
+    const std::size_t end = head.num_bytes + num_payload;
+    if (is_heartbeat && frame.size() < end + 2) break;
+    if (!is_heartbeat || Crc(frame.substr(1, end - 1), kCrcExtra) != (ByteAt(frame, end) | ByteAt(frame, end + 1) << 8)) {
+      ++at;
+      continue;
+    }
+    // Zeros at the end of the payload are not sent.
+    const auto autopilot = num_payload > kAutopilotAt ? ByteAt(frame, head.num_bytes + kAutopilotAt) : 0;
+    if (autopilot != kAutopilotInvalid) ++num_heartbeats;
+    at += end + 2;
+  }
+  rest_.erase(0, at);
+  return num_heartbeats;
+}
 
 std::string MavlinkWriter::Frame(Message message, std::string payload) {
   // Zeros at the end are not sent, but for the first byte.

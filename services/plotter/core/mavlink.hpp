@@ -1,4 +1,5 @@
-// Messages of MAVLink 2 as bytes. Not signed. Source: MAVLink guide, "Serialization"; message set common.xml.
+// Messages of MAVLink 2 as bytes, not signed, and the heartbeats of an autopilot among those that come back. Source: MAVLink guide, "Serialization";
+// message set common.xml.
 #pragma once
 
 #include <array>
@@ -68,6 +69,16 @@ class MavlinkWriter {
   std::uint8_t component_id_;
   std::uint8_t sequence_ = 0;
   std::uint16_t text_id_ = 0;
+};
+
+/// Finds HEARTBEAT in what a link receives: of MAVLink 1 and 2, at any place, cut anywhere. The rest is passed over, whatever it is.
+class MavlinkReader {
+ public:
+  /// @return how many heartbeats of an autopilot end in `bytes`: of right checksum, and not of a ground station or another computer on board
+  int CountHeartbeats(std::string_view bytes);
+
+ private:
+  std::string rest_;  // the beginning of a heartbeat: 20 bytes at most
 };
 
 }  // namespace lookout::plotter

@@ -245,7 +245,8 @@ bool N2kDevice::TakeRequest(const N2kHeader& header, const N2kFrame& frame, micr
   }
   if (state_ != State::kClaimed || header.source > kMostN2kAddress) return true;
   const bool is_known = pgn == kProductInformation || pgn == kPgnList || pgn == kHeartbeat;
-  const bool is_refused = !is_known && header.destination != kN2kEverybody && std::ranges::count(identity_.sent_pgns, pgn) == 0;
+  // Also of a PGN that comes by itself: who asked us alone waits for an answer.
+  const bool is_refused = !is_known && header.destination != kN2kEverybody;
   if ((is_known || is_refused) && MayAnswer(now)) Answer(pgn, header);
   return true;
 }

@@ -30,10 +30,10 @@ std::int64_t KeyOf(const Notice& notice) {
 
 RaisedKey RaisedKeyOf(const Notice& notice) { return {KeyOf(notice), notice.raised}; }
 
-int EscalationOf(const Notice& notice, Utime host_time) {
+int EscalationOf(const Notice& notice) {
   constexpr int kMost = 9;
   if (notice.level != Level::kWarning || notice.state != NoticeState::kActive) return 0;
-  const auto count = (host_time - notice.changed) / std::chrono::microseconds(kEscalateAfter);
+  const auto count = notice.unchanged_for / std::chrono::microseconds(kEscalateAfter);
   return count <= 0 ? 0 : static_cast<int>((count - 1) % kMost + 1);
 }
 
@@ -81,6 +81,8 @@ int NoticeSchedule::FirstRevision(const RaisedKey& key, const Notice& notice) {
 std::vector<NoticeSchedule::Due> NoticeSchedule::Take(std::span<const Notice> notices, std::chrono::microseconds now) {
   std::vector<Due> due;
   std::set<RaisedKey> keys;
+  if (!first_take_) first_take_ = now;
+  if (now - *first_take_ >= kEndedFor) recalled_.clear();
   for (const auto& notice : notices) {
     const auto key = KeyFor(notice);
     keys.insert(key);
@@ -132,6 +134,13 @@ std::vector<ToldNotice> NoticeSchedule::Standing() const {
   standing.reserve(sent_.size());
   for (const auto& [key, sent] : sent_) standing.push_back({sent.notice, sent.revision});
   return standing;
+}
+
+std::vector<ToldNotice> NoticeSchedule::Kept() const {
+  auto kept = Standing();
+  for (const auto& one : ended_) kept.push_back({one.sent.notice, one.sent.revision});
+  for (const auto& [key, told] : recalled_) kept.push_back(told);
+  return kept;
 }
 
 void NoticeSchedule::TellAgain(const Notice& notice) {

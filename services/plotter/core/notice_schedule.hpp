@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -26,7 +27,7 @@ std::string SubjectOf(const Notice& notice);
 inline constexpr std::chrono::minutes kEscalateAfter{5};
 
 /// How often a warning has been told anew: 0 to 9, and after 9 comes 1. 0 of what wants no acknowledgement.
-int EscalationOf(const Notice& notice, Utime host_time);
+int EscalationOf(const Notice& notice);
 
 /// A notice as it was told last.
 struct ToldNotice {
@@ -65,7 +66,12 @@ class NoticeSchedule {
   /// With the next Take.
   void TellAgain(const Notice& notice);
 
-  /// Of the process before: its notices keep their revisions, and one that changed meanwhile has the next. No notice is made of them.
+  /// Those whose revisions the next process needs: standing ones, those that ended within kEndedFor, and those of the process before that were not
+  /// told yet.
+  std::vector<ToldNotice> Kept() const;
+
+  /// Of the process before: its notices keep their revisions, and one that changed meanwhile has the next. No notice is made of them. After kEndedFor
+  /// they are forgotten.
   void Recall(std::span<const ToldNotice> notices);
 
  private:
@@ -87,6 +93,7 @@ class NoticeSchedule {
   Identity identity_;
   std::map<RaisedKey, Sent> sent_;
   std::map<RaisedKey, ToldNotice> recalled_;
+  std::optional<std::chrono::microseconds> first_take_;
   std::vector<Ended> ended_;  // the oldest first
 };
 

@@ -70,8 +70,9 @@ struct Notice {
   std::int64_t track_id = 0;  // 0: of none
   Utime raised;
   Utime changed;
-  Sound sound = Sound::kQuiet;  // one of all sounds; silenced is a warning that would
-  int escalation = 0;           // how often it was raised again because nobody acknowledged it, 0 to 9; after 9 comes 1
+  Sound sound = Sound::kQuiet;                 // one of all sounds; silenced is a warning that would
+  std::chrono::microseconds unchanged_for{0};  // time passed since `changed`, however the host's clock was set meanwhile
+  int escalation = 0;                          // how often it was raised again because nobody acknowledged it, 0 to 9; after 9 comes 1
   std::string text;
   bool is_old = false;  // nobody knows whether it still holds: it is neither told again nor cleared
 

@@ -1,6 +1,7 @@
 // A way out of this computer: a socket, a device.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,13 +22,17 @@ class Link {
   /// dropped once its buffer is full; a message without a receiver is counted.
   virtual void Send(std::string_view message) = 0;
 
-  /// Received messages, complete: lines without CR LF of a stream, datagrams, texts of a WebSocket. At most a bounded number waits; the rest is
+  /// Received messages, complete: lines without CR LF of a stream, datagrams, texts of a WebSocket; of a
+  /// binary stream pieces, as they come. At most a bounded number waits; the rest is
   /// counted.
   virtual std::optional<std::string> Receive() { return std::nullopt; }
 
   /// Bytes that may be sent now without falling behind: of a serial port by its speed; of a connection the free room of its buffer here, of several
   /// clients that of the quickest; over UDP the bytes that a receiver's buffer takes at once.
   virtual std::size_t room_bytes() const = 0;
+
+  /// After which a message that is sent now begins to leave: of a serial port the time that its unsent bytes take; 0 where nothing tells.
+  virtual std::chrono::microseconds delay() const { return std::chrono::microseconds(0); }
 
   /// Counts a message that was not made since nobody could be sent to.
   virtual void NoteUnsent() {}

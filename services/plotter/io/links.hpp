@@ -17,6 +17,7 @@ struct UdpOptions {
   std::string address;  // of one computer, a network's broadcast address, a multicast group (which is sent no further than the own network)
   int port = 0;
   std::string interface {};  // by which it is sent; empty = as the routes say
+  bool receives = false;     // datagrams that come back to the socket that sends; else nothing is received
 };
 
 struct TcpServerOptions {
@@ -36,6 +37,7 @@ struct SerialOptions {
   std::string name;
   std::string device;
   int baud = 0;
+  bool is_binary = false;  // what comes is received in pieces, as it comes; else in lines
 };
 
 struct CanOptions {

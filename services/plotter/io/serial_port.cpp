@@ -18,14 +18,21 @@ using boost::asio::posix::stream_descriptor;
 
 class SerialConnection final : public StreamConnection<stream_descriptor> {
  public:
-  using StreamConnection::StreamConnection;
+  SerialConnection(stream_descriptor stream, std::shared_ptr<Traffic> traffic, bool is_binary)
+      : StreamConnection(std::move(stream), std::move(traffic)), is_binary_(is_binary) {}
 
   std::size_t num_waiting() { return num_waiting_bytes(); }
 
  private:
   void OnEnd() override { Close("was unplugged"); }
+  void Take(std::string_view bytes) override {
+    if (!is_binary_) return StreamConnection::Take(bytes);
+    if (!bytes.empty()) traffic().Add(std::string(bytes));
+  }
   // Closing waits for unsent bytes of the port, for seconds.
   void PrepareClose() override { tcflush(stream().native_handle(), TCOFLUSH); }
+
+  bool is_binary_;
 };
 
 class SerialPort final : public ReopeningPort {
@@ -34,6 +41,7 @@ class SerialPort final : public ReopeningPort {
       : ReopeningPort(std::move(loop), options.name, "serial port " + options.device, std::chrono::seconds(1)),
         device_(options.device),
         baud_(options.baud),
+        is_binary_(options.is_binary),
         max_room_bytes_(std::max(kMaxLineBytes, static_cast<double>(options.baud) / kBitsPerByte / 2)) {}
 
   // Bytes beyond the speed of the line would only make all later ones late.
@@ -55,9 +63,12 @@ class SerialPort final : public ReopeningPort {
 
   std::size_t room_bytes() const override {
     if (!is_open()) return 0;
-    // By its speed, and, where the port itself is slower, by its unsent bytes.
-    const double room = std::min(room_bytes_, max_room_bytes_ - static_cast<double>(serial_->num_waiting()));
-    return static_cast<std::size_t>(std::max(room, 0.0));
+    return static_cast<std::size_t>(std::max(max_room_bytes_ - unsent_bytes(), 0.0));
+  }
+
+  std::chrono::microseconds delay() const override {
+    if (!is_open()) return {};
+    return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::duration<double>(unsent_bytes() * kBitsPerByte / baud_));
   }
 
  private:
@@ -65,16 +76,20 @@ class SerialPort final : public ReopeningPort {
   // Room for half a second; at the lowest speeds for the longest line (of NMEA 2000; of NMEA 0183 it has 82 bytes).
   static constexpr double kMaxLineBytes = 256;
 
+  // By its speed, and, where the port itself is slower, by what it holds.
+  double unsent_bytes() const { return std::max(max_room_bytes_ - room_bytes_, static_cast<double>(serial_->num_waiting())); }
+
   std::shared_ptr<Connection> Open(std::string& fault) override {
     const int descriptor = io::OpenSerialDevice(device_, baud_, O_RDWR, fault);
     if (descriptor < 0) return nullptr;
-    serial_ = std::make_shared<SerialConnection>(stream_descriptor(context(), descriptor), traffic_);
+    serial_ = std::make_shared<SerialConnection>(stream_descriptor(context(), descriptor), traffic_, is_binary_);
     serial_->Start();
     return serial_;
   }
 
   std::string device_;
   int baud_;
+  bool is_binary_;
   double max_room_bytes_;
   double room_bytes_ = 0;
   SteadyTime last_tick_ = std::chrono::steady_clock::now();

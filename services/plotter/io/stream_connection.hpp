@@ -9,6 +9,7 @@
 #include <boost/system/error_code.hpp>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "services/plotter/io/connection.hpp"
@@ -31,6 +32,7 @@ class StreamConnection : public Connection, public std::enable_shared_from_this<
   /// The other side sends no more. Closes unless it may still be sent to.
   virtual void OnEnd() { Close("ended"); }
   virtual void PrepareClose() {}
+  virtual void Take(std::string_view bytes) { cutter_.Cut(bytes, traffic()); }
 
   Stream& stream() { return stream_; }
 
@@ -44,7 +46,7 @@ class StreamConnection : public Connection, public std::enable_shared_from_this<
   void Read() {
     stream_.async_read_some(boost::asio::buffer(bytes_), [self = this->shared_from_this()](boost::system::error_code error, std::size_t num_bytes) {
       if (self->state() == State::kClosed) return;
-      self->cutter_.Cut({self->bytes_.data(), num_bytes}, self->traffic());
+      self->Take({self->bytes_.data(), num_bytes});
       if (!error) return self->Read();
       if (error == boost::asio::error::eof) return self->OnEnd();
       self->Close(error.message());

@@ -26,6 +26,7 @@ class UdpPort final : public Port {
       : Port(std::move(loop)),
         destination_(ParseAddress(options.name, options.address), static_cast<std::uint16_t>(options.port)),
         interface_(options.interface),
+        receives_(options.receives),
         place_(std::string(kTo) + PlaceOf(options.address, options.port)),
         names_(options.name, {"sent", "unsent", "unheard", "openings"}),
         socket_(context()) {
@@ -64,6 +65,7 @@ class UdpPort final : public Port {
     if (!socket_.is_open()) {
       if (now - last_attempt_ >= kPause) Open(now);
     } else {
+      if (receives_) ReceiveAll(now);
       if (!fault_.empty() && now - last_failure_ > kFaultHold) fault_.clear();
       if (!remark_.empty() && now - last_unheard_ > kFaultHold) remark_.clear();
     }
@@ -127,6 +129,24 @@ class UdpPort final : public Port {
     last_failure_ = now;
   }
 
+  // A bounded number of datagrams: a flood holds nobody up.
+  void ReceiveAll(SteadyTime now) {
+    std::array<char, 2048> bytes{};
+    for (int i = 0; i < 64; ++i) {
+      boost::system::error_code error;
+      udp::endpoint sender;
+      const auto num_bytes = socket_.receive_from(boost::asio::buffer(bytes), sender, 0, error);
+      if (error == boost::asio::error::would_block) return;
+      if (!error) {
+        if (num_bytes > 0) traffic_->Add({bytes.data(), num_bytes});
+        continue;
+      }
+      // Of a message that was sent.
+      NoteError(error, now);
+      ForgetErrors();
+    }
+  }
+
   void ForgetErrors() {
     std::array<char, 256> about{};
     for (int i = 0; i < 100; ++i) {
@@ -139,6 +159,7 @@ class UdpPort final : public Port {
 
   udp::endpoint destination_;
   std::string interface_;
+  bool receives_;
   std::string place_;
   CounterNames names_;
   std::size_t room_bytes_ = kMaxAtOnceBytes;

@@ -71,6 +71,27 @@ TEST(AisParts, PartsOutOfOrderAreRefusedAndCounted) {
   EXPECT_EQ(CountOf(joiner, "ais_parts_out_of_order"), 4);
 }
 
+// Two receivers broadcast to one UDP port: the head of one took the tail of the other, and a ship had the size of another.
+TEST(AisParts, PartsOfTwoReceiversUnderOneNumberAreNotMixed) {
+  const auto one = Big(1, 4);
+  const auto two = Big(2, 4);
+  for (const auto& order : {std::vector{one[0], two[0], one[1], two[1]}, std::vector{one[0], two[0], two[1], one[1]},
+                            std::vector{one[0], two[0], one[0], two[1], one[1]}}) {
+    PartJoiner joiner;
+    auto time = kBegin;
+    for (const auto& line : order) EXPECT_FALSE(joiner.Add(time += 5ms, "udp", line));
+    EXPECT_EQ(CountOf(joiner, "ais_parts_mixed"), static_cast<std::int64_t>(order.size()) - 1);
+    // The next message under that number comes whole.
+    EXPECT_FALSE(joiner.Add(time += 400ms, "udp", one[0]));
+    EXPECT_EQ(joiner.Add(time += 5ms, "udp", one[1])->payload.Unsigned(8, 30), 1U);
+  }
+  // One transmission that both heard.
+  PartJoiner joiner;
+  EXPECT_FALSE(joiner.Add(kBegin, "udp", one[0]));
+  EXPECT_FALSE(joiner.Add(kBegin + 1ms, "udp", one[0]));
+  EXPECT_EQ(joiner.Add(kBegin + 2ms, "udp", one[1])->payload.Unsigned(8, 30), 1U);
+}
+
 TEST(AisParts, APartThatComesTooLateEndsTheWait) {
   PartJoiner joiner;
   const auto lines = Big(1, 1);

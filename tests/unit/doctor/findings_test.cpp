@@ -228,6 +228,19 @@ TEST(DoctorLidar, SeesAPortThatIsTakenAndASensorThatIsNotWanted) {
   EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "lidar.txtpb is wrong");
 }
 
+// GNSS came by one input and the AIS receiver on another was off: nothing said so.
+TEST(DoctorNavigation, NamesAnInputThatIsSilent) {
+  auto seen = Healthy();
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kOk, "");
+  seen.config.navigation->connections.push_back({.name = "ais", .kind = navigator::Connection::Kind::kSerial, .address = "", .file = "/dev/ttyUSB1"});
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kWarning, "'ais' is silent: nothing came from it in 5 s");
+  seen.navigation.input_faults.emplace_back("ais", "cannot open /dev/ttyUSB1: No such file or directory");
+  EXPECT_EQ(About(CheckNavigation(seen), "input").text.find("is silent"), std::string::npos) << "why is told already";
+  seen.navigation.input_faults.clear();
+  seen.navigation.num_by_source["ais"] = 1;
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kOk, "");
+}
+
 // On a busy computer the first HEALTH came later than the doctor waits for it, and it told of a taken port whose process sent on the same bus.
 TEST(DoctorLidar, APortThatAProcessHoldsIsNoFaultThoughItsHealthCameLate) {
   auto seen = Healthy();

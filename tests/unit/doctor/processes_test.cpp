@@ -94,19 +94,22 @@ TEST(DoctorPage, NamesWhatItLacks) {
   EXPECT_SAYS(About(CheckPage(seen), "page"), kFault, "TCP port 7668 is taken by another program");
 }
 
+// A counter, as it was when the doctor began to watch and as it is now.
+void Say(ProcessSeen& process, const std::string& name, std::int64_t before, std::int64_t now) {
+  for (auto* health : {&process.first, &process.last}) {
+    health_counter_t counter{};
+    counter.name = name;
+    counter.count = health == &process.first ? before : now;
+    health->counters.insert(health->counters.begin(), counter);
+    health->num_counters = static_cast<std::int32_t>(health->counters.size());
+  }
+}
+
 TEST(DoctorPlotter, NamesAnOutputThatDoesNotTakeOurData) {
   auto seen = Healthy();
   EXPECT_TRUE(CheckPlotter(seen).empty());
   auto& plotter = seen.processes["plotter"].front();
-  const auto say = [&](const std::string& name, std::int64_t before, std::int64_t now) {
-    for (auto* health : {&plotter.first, &plotter.last}) {
-      health_counter_t counter{};
-      counter.name = name;
-      counter.count = health == &plotter.first ? before : now;
-      health->counters.insert(health->counters.begin(), counter);
-      health->num_counters = static_cast<std::int32_t>(health->counters.size());
-    }
-  };
+  const auto say = [&](const std::string& name, std::int64_t before, std::int64_t now) { Say(plotter, name, before, now); };
   say("acks_sent", 0, 7);
   EXPECT_TRUE(CheckPlotter(seen).empty());
   say("output_tablet_sent", 100, 180);
@@ -117,6 +120,38 @@ TEST(DoctorPlotter, NamesAnOutputThatDoesNotTakeOurData) {
   EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "output 'tablet' is too slow: 30 messages dropped");
   say("output_tablet_clients", 0, 0);
   EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "output 'tablet' waits: nobody is connected");
+}
+
+// A serial port takes all that is written to it, whether or not somebody is at the other end: the doctor said ok.
+TEST(DoctorPlotter, NamesAnAutopilotThatIsNotHeard) {
+  auto seen = Healthy();
+  auto& plotter = seen.processes["plotter"].front();
+  Say(plotter, "output_pilot_sent", 100, 180);
+  Say(plotter, "output_pilot_heartbeats", 0, 0);
+  EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "output 'pilot' sends, but no HEARTBEAT of an autopilot has come back");
+  Say(plotter, "output_pilot_unheard", 0, 4);
+  EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "no HEARTBEAT of an autopilot has come back");
+  Say(plotter, "output_pilot_unheard", 0, 0);
+  Say(plotter, "output_pilot_heartbeats", 9, 9);
+  EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "output 'pilot' sends, but the autopilot's HEARTBEAT has stopped");
+  Say(plotter, "output_pilot_heartbeats", 9, 13);
+  EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kOk, "output 'pilot' sends, 80 messages taken, the autopilot's HEARTBEAT comes");
+}
+
+TEST(DoctorAis, SaysWhetherAisIsHeardAndUnderstood) {
+  auto seen = Healthy();
+  EXPECT_TRUE(CheckAis(seen).empty()) << "nobody expects AIS";
+  seen.config.files["ais.txtpb"];
+  EXPECT_SAYS(About(CheckAis(seen), "ais"), kWarning, "no sentence of AIS (!AIVDM, !AIVDO) has come");
+  auto& ais = seen.processes["ais"].front();
+  Say(ais, "ais_sentences", 0, 40);
+  Say(ais, "ais_bad_checksum", 0, 38);
+  EXPECT_SAYS(About(CheckAis(seen), "ais"), kWarning, "40 sentences of AIS came, and none was understood: 38 with a wrong checksum or none");
+  Say(ais, "messages_understood", 0, 1);
+  Say(ais, "ships", 0, 1);
+  EXPECT_SAYS(About(CheckAis(seen), "ais"), kOk, "40 sentences of AIS, 1 message understood, 1 ship");
+  seen.processes.erase("ais");
+  EXPECT_TRUE(CheckAis(seen).empty());
 }
 
 TEST(DoctorProcesses, SeesTwoOfAKindButNotARestart) {

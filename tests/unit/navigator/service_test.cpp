@@ -1,5 +1,6 @@
 #include "services/navigator/service.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -367,6 +368,45 @@ TEST(Service, GoesOnIn2039) {
   EXPECT_EQ(pose.status, pose_t::STATUS_OK);
   EXPECT_EQ(rig.Messages<gnss_fix_t>(bus::kGnssFix).back().utime_us, ToUtimeUs(start) + 4'000'000);
   EXPECT_EQ(rig.Count("date_unusable"), 0);
+}
+
+// Of the bytes of POSE, raw_seq aside, which counts the lines of AIS, too.
+std::vector<pose_t> PosesWithAis(bool has_ais) {
+  Rig rig(TestParams(kFromSources));
+  for (int i = 0; i < 450; ++i) {
+    const double time_s = 0.1 * i;
+    // The antenna is lost after 5 s. The transponder has a receiver of its own, and goes on.
+    const bool has_fix = time_s < 5.0;
+    if (has_fix) rig.Datagram(time_s, RmcLine(NoonPlus(time_s), 43.63 + 2e-6 * i, -72.15, 2.0, 10.0) + "\r\n");
+    rig.Datagram(time_s + 0.01, HdtLine(10.0) + "\r\n");
+    // At 43.7 N 72.0 W, not where the boat is.
+    if (has_ais) rig.Datagram(time_s + 0.02, Line("AIVDO,1,1,,,13P88;@P00rMAAfE;iP00?v00000,0", '!') + "\r\n");
+    if (has_ais) rig.Datagram(time_s + 0.03, Line("AIVDM,1,1,,A,13u?etPv2;0n:dDPwUM1U1Cb069D,0", '!') + "\r\n");
+    rig.service.AdvanceTo(NoonPlus(time_s + 0.05));
+    rig.Drain();
+  }
+  // Of both the same times, whichever line came last.
+  rig.service.AdvanceTo(NoonPlus(46.0));
+  rig.Drain();
+  auto poses = rig.Messages<pose_t>(bus::kPose);
+  for (auto& pose : poses) pose.raw_seq = 0;
+  return poses;
+}
+
+// A transponder's positions are no fixes: they would hide that there are none.
+TEST(Service, LosesThePositionThoughAisGoesOn) {
+  const auto poses = PosesWithAis(true);
+  const auto alone = PosesWithAis(false);
+  ASSERT_EQ(poses.size(), alone.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) ASSERT_EQ(bus::Encode(poses[i]), bus::Encode(alone[i])) << i;
+  std::vector<std::int32_t> statuses;
+  for (const auto& pose : poses) {
+    if (statuses.empty() || statuses.back() != pose.status) statuses.push_back(pose.status);
+  }
+  statuses.erase(statuses.begin(), std::ranges::find(statuses, std::int32_t{pose_t::STATUS_OK}));
+  // The earth is not known then: a frame of its own follows.
+  EXPECT_EQ(statuses,
+            (std::vector<std::int32_t>{pose_t::STATUS_OK, pose_t::STATUS_COASTING, pose_t::STATUS_NO_POSITION, pose_t::STATUS_RELATIVE_TO_BOAT}));
 }
 
 }  // namespace

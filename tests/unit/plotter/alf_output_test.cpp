@@ -1,4 +1,5 @@
 // An output that tells of alerts by ALF, with the list, the heartbeat and the commands that belong to it.
+#include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ class AlfOutput : public test::ServiceFixture {
     std::vector<std::unique_ptr<Output>> outputs;
     outputs.push_back(
         std::make_unique<NmeaOutput>(OutputParams{.name = "bridge", .alerts = SentAlerts::kAlf, .takes_acknowledgements = takes_acknowledgements},
-                                     std::move(link), params_.target_period, RevisionFile(folder_ / "alerts.txt")));
+                                     std::move(link), params_.target_period, RevisionFile(revisions_)));
     NewBus();
     bus::Subscribe<order_t>(*bus_, bus::kOrders, [this](const order_t& message) { ordered_.push_back(message); });
     service_ = std::make_unique<Service>(*bus_, params_, std::move(outputs));
@@ -41,6 +42,7 @@ class AlfOutput : public test::ServiceFixture {
   }
 
   support::TempDir folder_;
+  std::filesystem::path revisions_ = folder_ / "alerts.txt";
   test::KeepingLink* link_ = nullptr;
   std::vector<order_t> ordered_;
 };
@@ -109,6 +111,24 @@ TEST_F(AlfOutput, RaisesAgainWhatNobodyAcknowledges) {
   EXPECT_EQ(link_->With(",B,W,A,LKO,10002,3,3,0,").size(), 1U);
 }
 
+// The clock of the host was set ahead by an hour, as by the first fix: each warning was raised again at once.
+TEST_F(AlfOutput, RaisesAgainByTimePassedAndNotByTheClock) {
+  alerts_ = {MakeAlert(3)};
+  Run(60'000'000);
+  host_us_ += 3'600'000'000;
+  Run(60'000'000);
+  EXPECT_TRUE(link_->With(",LKO,10002,3,2,").empty());
+  // A warning that comes up after a step back, the same.
+  host_us_ -= 7'200'000'000;
+  alerts_.push_back(MakeAlert(4));
+  alerts_[1].raised_utime_us = alerts_[1].changed_utime_us = host_us_;
+  Run(290'000'000);
+  EXPECT_FALSE(link_->With(",B,W,V,LKO,10002,3,2,1,").empty());
+  EXPECT_TRUE(link_->With(",LKO,10002,4,2,").empty());
+  Run(20'000'000);
+  EXPECT_FALSE(link_->With(",B,W,V,LKO,10002,4,2,1,").empty());
+}
+
 TEST_F(AlfOutput, GoesOnWithItsRevisionsAfterARestart) {
   alerts_ = {MakeAlert(3)};
   Run(300'000);
@@ -117,6 +137,16 @@ TEST_F(AlfOutput, GoesOnWithItsRevisionsAfterARestart) {
   StartWith(true);
   Run(300'000);
   EXPECT_EQ(link_->With(",B,W,A,LKO,10002,3,2,0,").size(), 1U);
+  // Over, and active again within 10 s, with a restart between.
+  alerts_.clear();
+  Run(300'000);
+  EXPECT_EQ(link_->With(",B,W,N,LKO,10002,3,3,0,").size(), 1U);
+  StartWith(true);
+  Run(300'000);
+  alerts_ = {MakeAlert(3)};
+  Run(300'000);
+  EXPECT_EQ(link_->With(",B,W,V,LKO,10002,3,4,0,").size(), 1U);
+  alerts_[0].state = alert_t::STATE_ACKNOWLEDGED;
   std::ofstream(folder_ / "alerts.txt") << "3 2 damaged";
   StartWith(true);
   Run(300'000);
@@ -135,6 +165,20 @@ TEST_F(AlfOutput, TellsItsOwnWatchApartFromTheTrackers) {
   Run(8'000'000);
   EXPECT_FALSE(link_->With(",N,LKO,10003,999999,").empty());
   EXPECT_TRUE(link_->With(",N,LKO,10003,1,").empty());
+}
+
+// The only word that nobody looks: it can be acknowledged, and not silenced. Nor can a caution, which makes no lasting sound.
+TEST_F(AlfOutput, SilencesWarningsOfThingsAlone) {
+  alerts_ = {MakeAlert(-1), MakeAlert(5)};
+  alerts_[0].cause = alert_t::CAUSE_WATCH;
+  alerts_[1].level = alert_t::LEVEL_CAUTION;
+  Run(300'000);
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10003,1,S,C").size(), 1U);
+  EXPECT_EQ(Answers("CAACN,102031.00,LKO,10002,5,S,C").size(), 1U);
+  EXPECT_TRUE(ordered_.empty());
+  EXPECT_TRUE(Answers("CAACN,102031.00,LKO,10003,1,A,C").empty());
+  ASSERT_EQ(acknowledged_.size(), 1U);
+  EXPECT_EQ(acknowledged_[0].alert_id, -1);
 }
 
 // Ids begin anew with each process of the tracker: the end of the old alert took off the new one of its number.
@@ -165,6 +209,45 @@ TEST_F(AlfOutput, ListsManyAlertsOverASlowPort) {
   }
   EXPECT_FALSE(link_->With("HBT").empty());
   EXPECT_GE(link_->With("ALC").size(), 8U) << "four alerts in each";
+}
+
+// A list of two sentences waited for room when one of one sentence came: the second of the old one went out behind it.
+TEST_F(AlfOutput, SendsNothingOfAnOldListBehindAShorterOne) {
+  for (int id = 1; id <= 6; ++id) alerts_.push_back(MakeAlert(id));
+  Run(31'000'000);
+  ASSERT_FALSE(link_->With("RAALC,02,02,").empty());
+  link_->sent.clear();
+  link_->room = 0;
+  Run(31'000'000);
+  alerts_.resize(1);
+  Run(31'000'000);
+  EXPECT_TRUE(link_->sent.empty());
+  link_->room = 1'000'000;
+  Run(1'000'000);
+  EXPECT_EQ(link_->With("RAALC,01,01,").size(), 1U);
+  EXPECT_TRUE(link_->With("RAALC,02,").empty());
+}
+
+TEST_F(AlfOutput, TellsAFurtherBoatAfterAThousandAlerts) {
+  revisions_.clear();  // a file for each change would take seconds
+  StartWith(true);
+  for (std::int64_t id = 1; id <= 1200; ++id) {
+    link_->room = 1'000'000;
+    alerts_ = {MakeAlert(id)};
+    Run(100'000);
+    Answers("CAACN,102031.00,LKO,10002," + std::to_string(id) + (id % 2 == 0 ? ",A,C" : ",S,C"));
+    if (id % 2 == 0) alerts_[0].state = alert_t::STATE_ACKNOWLEDGED;
+    Run(100'000);
+    alerts_.clear();
+    Run(100'000);
+  }
+  EXPECT_EQ(acknowledged_.size(), 600U);
+  EXPECT_FALSE(ordered_.empty());
+  link_->sent.clear();
+  alerts_ = {MakeAlert(1201)};
+  alerts_[0].raised_utime_us = alerts_[0].changed_utime_us = host_us_;
+  Run(100'000);
+  EXPECT_EQ(link_->With(",B,W,V,LKO,10002,1201,1,0,").size(), 1U);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // The plotter's service on a bus of its own, with links that keep what was sent.
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <deque>
 #include <gtest/gtest.h>
 #include <memory>
@@ -23,13 +25,16 @@ class KeepingLink : public Link {
   std::vector<std::string> sent;
   std::deque<std::string> received;
   std::size_t room = 1'000'000;
+  double bytes_per_s = 0.0;  // of a port that has room for half a second; 0: of one without a speed
+  double unsent_bytes = 0.0;
   bool is_there = true;
   std::int64_t openings = 1;
   std::string wrong;
 
   void Send(std::string_view message) override {
-    EXPECT_LE(message.size(), room);
+    EXPECT_LE(message.size(), room_bytes());
     room -= std::min(room, message.size());
+    unsent_bytes += static_cast<double>(message.size());
     sent.emplace_back(message);
   }
   std::optional<std::string> Receive() override {
@@ -38,7 +43,13 @@ class KeepingLink : public Link {
     received.pop_front();
     return message;
   }
-  std::size_t room_bytes() const override { return room; }
+  std::size_t room_bytes() const override {
+    return bytes_per_s > 0.0 ? static_cast<std::size_t>(std::max(bytes_per_s / 2.0 - unsent_bytes, 0.0)) : room;
+  }
+  std::chrono::microseconds delay() const override {
+    return std::chrono::microseconds(bytes_per_s > 0.0 ? static_cast<std::int64_t>(1e6 * unsent_bytes / bytes_per_s) : 0);
+  }
+  void Pass(double duration_s) { unsent_bytes = std::max(unsent_bytes - duration_s * bytes_per_s, 0.0); }
   bool is_open() const override { return is_there; }
   std::int64_t num_openings() const override { return openings; }
   std::string fault() const override { return wrong; }

@@ -237,6 +237,7 @@ class MavlinkService : public ::testing::Test {
   void Wait(std::int64_t duration_us, bool has_pose = true) {
     for (const auto end_us = host_us_ + duration_us; host_us_ < end_us;) {
       host_us_ += 20'000;
+      link_->Pass(0.02);
       service_->AdvanceTo(Now());
       if (has_pose) SendPose(host_us_);
       support::HandleAll(*bus_);

@@ -68,6 +68,39 @@ TEST_F(MavlinkService, IsSilentWhileAnAlertSaysThatNobodyLooks) {
   EXPECT_TRUE(Last());
 }
 
+// A boat is ahead and TRACKS, ALERTS and POSE come, but no scan does: distances went on while the text said that none are sent.
+TEST_F(MavlinkService, SendsNoDistanceBetweenTheTextsThatNoneAreSentAndThatTheyAreBack) {
+  for (const auto form : {MavlinkForm::kSectors, MavlinkForm::kPoints}) {
+    output_.mavlink.form = form;
+    host_us_ = kStartUs;
+    Start();
+    tracks_ = {TrackOf(4, Box(Ahead(1, 10.0, 0.0), 2.0, 2.0, -heading_rad_))};
+    for (int i = 0; i < 60; ++i) {
+      sends_scan_ = i < 10 || i >= 40;
+      sends_labels_ = i < 10 || i >= 25;
+      NextScan();
+    }
+    bool is_told_to_look = false;
+    int num_distances = 0;
+    for (const auto& frame : Frames()) {
+      if (frame.message_id == support::kStatusTextId) is_told_to_look = frame.text() != "Lookout: no look-out, no distances are sent";
+      if (frame.message_id != support::kObstacleDistanceId && frame.message_id != support::kObstacleDistance3dId) continue;
+      EXPECT_TRUE(is_told_to_look);
+      ++num_distances;
+    }
+    EXPECT_GE(num_distances, 30);
+    EXPECT_EQ(Texts(), (std::vector<std::string>{"Lookout: the look-out begins", "Lookout: no look-out, no distances are sent",
+                                                 "Lookout: the look-out is back"}));
+    // A receiver takes 0.5 s of silence for "no data".
+    link_->sent.clear();
+    sends_scan_ = false;
+    Run(30);
+    EXPECT_TRUE(Frames(support::kObstacleDistanceId).empty());
+    EXPECT_TRUE(Frames(support::kObstacleDistance3dId).empty());
+    EXPECT_EQ(Frames(support::kHeartbeatId).back().At<std::uint8_t>(7), 5);  // MAV_STATE_CRITICAL
+  }
+}
+
 // An autopilot needs no position of ours; but it gets no word of clear water where no scan comes.
 TEST_F(MavlinkService, IsHealthyWithoutAPositionAndNotWithoutTheScan) {
   pose_status_ = pose_t::STATUS_UNKNOWN;
@@ -119,6 +152,37 @@ TEST_F(MavlinkService, SendsPointsInPlaceOfSectors) {
     EXPECT_EQ(points[i].At<std::uint8_t>(27), 12);
     EXPECT_GE(std::hypot(points[i].At<float>(4), points[i].At<float>(8)), std::hypot(points[i - 1].At<float>(4), points[i - 1].At<float>(8)));
   }
+}
+
+// 72 points of 40 bytes ten times a second are 2.5 times what 115200 baud carry. They filled the port: each was 0.5 s old when it left.
+TEST_F(MavlinkService, SendsAsManyPointsAsTheCableCarriesUntilTheNextScan) {
+  output_.mavlink.form = MavlinkForm::kPoints;
+  Start();
+  velocity_mps_ = {0.0, 0.0};
+  turn_radps_ = 0.0;
+  things_ = {Box(Ahead(0, 0.0, 3.0), 40.0, 50.0, -heading_rad_)};
+  link_->bytes_per_s = 11'520.0;
+  Run(2);
+  double least_m = kNothing;
+  for (std::size_t i = 0; i < kNumSectors; ++i) least_m = std::min(least_m, TrueDistance(i, 0.0));
+  for (int i = 0; i < 100; ++i) {
+    link_->sent.clear();
+    NextScan();
+    // The last point leaves within 0.1 s.
+    EXPECT_LE(link_->delay(), std::chrono::milliseconds(104));
+    const auto points = Frames(support::kObstacleDistance3dId);
+    ASSERT_GE(points.size(), 20U);
+    EXPECT_NEAR(std::hypot(points.front().At<float>(4), points.front().At<float>(8)), least_m, 0.1);
+  }
+}
+
+TEST_F(MavlinkService, CountsTheHeartbeatsOfTheAutopilot) {
+  EXPECT_EQ(support::CountOf(*service_, "output_pilot_heartbeats"), 0);
+  const auto heartbeat = support::AutopilotHeartbeat();
+  link_->received = {heartbeat, "noise", heartbeat.substr(0, 5), heartbeat.substr(5)};
+  Wait(100'000);
+  EXPECT_EQ(support::CountOf(*service_, "output_pilot_heartbeats"), 2);
+  EXPECT_EQ(support::CountOf(*service_, "lines_refused"), 0);
 }
 
 }  // namespace

@@ -65,6 +65,42 @@ TEST(Mavlink, SendsALongTextInPartsOfWhichTheLastIsNotFull) {
   }
 }
 
+TEST(MavlinkReader, CountsTheHeartbeatsOfAnAutopilotWhereverTheyAreCut) {
+  MavlinkWriter own(1, 196);
+  const std::string stream = "boot text\r\n" + support::AutopilotHeartbeat(true) + own.StatusText(MavSeverity::kInfo, "text").front() + "\xFE\xFD" +
+                             support::AutopilotHeartbeat(false) + "\xFD" + support::AutopilotHeartbeat(true) + std::string(30, '\xFE');
+  EXPECT_EQ(MavlinkReader().CountHeartbeats(stream), 3);
+  for (std::size_t piece = 1; piece < 40; ++piece) {
+    MavlinkReader reader;
+    int num_heartbeats = 0;
+    for (std::size_t at = 0; at < stream.size(); at += piece) num_heartbeats += reader.CountHeartbeats(stream.substr(at, piece));
+    EXPECT_EQ(num_heartbeats, 3) << piece;
+  }
+}
+
+TEST(MavlinkReader, CountsNeitherOthersNorWhatIsDamaged) {
+  MavlinkReader reader;
+  EXPECT_EQ(reader.CountHeartbeats(MavlinkWriter(1, 196).Heartbeat(MavState::kActive)), 0) << "ours, that came back";
+  EXPECT_EQ(reader.CountHeartbeats(support::AutopilotHeartbeat(true, '\x08')), 0) << "a ground station";
+  for (const bool is_second : {true, false}) {
+    const auto good = support::AutopilotHeartbeat(is_second);
+    for (std::size_t i = 0; i < good.size(); ++i) {
+      auto bad = good;
+      bad[i] = static_cast<char>(bad[i] ^ 0x20);
+      // Flags and the number of a frame are under the checksum, too.
+      EXPECT_EQ(MavlinkReader().CountHeartbeats(bad + std::string(20, '\0')), 0) << i;
+    }
+  }
+  // Whatever comes, at most the beginning of a heartbeat is kept, and the next one is found.
+  std::uint32_t state = 1;
+  for (int i = 0; i < 200'000; ++i) {
+    state = state * 1'664'525 + 1'013'904'223;
+    const char byte = state >> 31U != 0 ? '\xFD' : static_cast<char>(state >> 24U);
+    reader.CountHeartbeats({&byte, 1});
+  }
+  EXPECT_EQ(reader.CountHeartbeats(std::string(300, '\0') + support::AutopilotHeartbeat(true)), 1);
+}
+
 Look LookedAllRound() {
   Look look;
   look.is_looked.fill(true);
@@ -89,13 +125,13 @@ TEST(MavSectors, SayNearClearAndUnknown) {
   EXPECT_EQ(message.distance_cm[1], 4001);
 }
 
-TEST(MavPoints, ComeNearestFirstWithOneStampAndAsManyAsThereIsRoomFor) {
+TEST(MavPoints, ComeNearestFirstWithOneStamp) {
   auto look = LookedAllRound();
   look.sectors.AddPoint({30.0, 0.0});
   look.sectors.AddPoint({0.0, 5.0});  // to port
   look.sectors.AddPoint({0.0, -50.0});
   look.sectors.AddPoint({-20.0, -0.1});
-  const auto points = ToMavPoints(look, Utime(std::chrono::milliseconds(77)), 40.0, 100);
+  const auto points = ToMavPoints(look, Utime(std::chrono::milliseconds(77)), 40.0);
   ASSERT_EQ(points.size(), 3U);
   EXPECT_EQ(points[0].y_m, -5.0);  // y is to starboard
   EXPECT_EQ(points[1].x_m, -20.0);
@@ -104,15 +140,13 @@ TEST(MavPoints, ComeNearestFirstWithOneStampAndAsManyAsThereIsRoomFor) {
     EXPECT_EQ(point.time_ms, 77U);
     EXPECT_EQ(point.max_distance_m, 40.0);
   }
-  EXPECT_EQ(ToMavPoints(look, Utime(), 40.0, 2).size(), 2U);
 }
 
 // ArduPilot keeps the points of the stamp before until one of another stamp comes: one that is too far to be taken.
-TEST(MavPoints, AreOneBeyondTheDistanceWhereNothingIsAndNoneWhereNobodyLooked) {
-  const auto points = ToMavPoints(LookedAllRound(), Utime(), 40.0, 100);
+TEST(MavPoints, AreOneBeyondTheDistanceWhereNothingIs) {
+  const auto points = ToMavPoints(LookedAllRound(), Utime(), 40.0);
   ASSERT_EQ(points.size(), 1U);
   EXPECT_EQ(points.front().x_m, 41.0);
-  EXPECT_TRUE(ToMavPoints(Look(), Utime(), 40.0, 100).empty());
 }
 
 }  // namespace

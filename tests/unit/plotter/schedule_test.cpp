@@ -198,5 +198,26 @@ TEST(PlotterNoticeSchedule, GoesOnWithTheRevisionsOfTheProcessBefore) {
   EXPECT_EQ(due[3].revision, 1);
 }
 
+// Ended, and there again after a restart: revision 1 was told a second time, which the receiver knew.
+TEST(PlotterNoticeSchedule, GoesOnWithTheRevisionOfWhatEndedBeforeTheRestart) {
+  const std::vector<Notice> notices{MakeNotice(3)};
+  NoticeSchedule before;
+  before.Take(notices, 0s);
+  EXPECT_EQ(before.Take({}, 1s).at(0).revision, 2);
+  // Two restarts within ten minutes, the first of a process that told nothing.
+  NoticeSchedule between;
+  between.Recall(before.Kept());
+  EXPECT_TRUE(between.Take({}, 0s).empty());
+  EXPECT_TRUE(between.Standing().empty());
+  NoticeSchedule schedule;
+  schedule.Recall(between.Kept());
+  ASSERT_EQ(schedule.Take(notices, 3s).size(), 1U);
+  EXPECT_EQ(schedule.Standing().at(0).revision, 3);
+  EXPECT_EQ(schedule.Kept().size(), 1U);
+  // After ten minutes nobody waits for it any more.
+  between.Take({}, 10min);
+  EXPECT_TRUE(between.Kept().empty());
+}
+
 }  // namespace
 }  // namespace lookout::plotter

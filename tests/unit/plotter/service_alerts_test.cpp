@@ -223,5 +223,40 @@ TEST_F(PlotterAlerts, TakesNoAcknowledgementWhereConfigDoesNot) {
   EXPECT_EQ(Count("acks_sent"), 0);
 }
 
+// More alerts than there are numbers of ALR, and than are kept once they are over: the next one is told as the first was, and sounds.
+TEST_F(PlotterAlerts, TellAFurtherBoatAfterAThousandOthers) {
+  constexpr std::int64_t kNum = 1200;
+  const auto raise = [this](std::int64_t id) {
+    alerts_ = {MakeAlert(id)};
+    alerts_[0].raised_utime_us = alerts_[0].changed_utime_us = host_us_;
+    sounding_alert_id_ = id;
+    Run(100'000);
+  };
+  for (std::int64_t id = 1; id <= kNum; ++id) {
+    raise(id);
+    sounding_alert_id_ = 0;
+    if (id % 3 == 0) silenced_until_us_ = host_us_ + 30'000'000;
+    if (id % 3 == 1) {
+      const auto number = std::to_string(1000 + (id - 1) % 997 + 1).substr(1);
+      nmea_->received = {Ack("IIACK," + number)};
+      Wait(100'000);
+      alerts_[0].state = alert_t::STATE_ACKNOWLEDGED;
+    }
+    Run(100'000);
+    alerts_.clear();
+    Run(100'000);
+    if (id % 50 == 0) Run(1'000'000);
+    Clear();
+    nmea_->room = signal_k_->room = 1'000'000;
+  }
+  EXPECT_EQ(acknowledged_.size(), static_cast<std::size_t>(kNum) / 3);
+  raise(kNum + 1);
+  EXPECT_FALSE(nmea_->With(",204,A,V,").empty());
+  const auto told = signal_k_->With("closestApproach1201");
+  ASSERT_FALSE(told.empty());
+  EXPECT_NE(told.back().find("\"sound\""), std::string::npos) << told.back();
+  EXPECT_EQ(Count("lines_dropped"), 0);
+}
+
 }  // namespace
 }  // namespace lookout::plotter

@@ -43,6 +43,22 @@ TEST_F(SerialLinkTest, SendsRawBytesAndReceivesLines) {
   EXPECT_EQ(settings.c_cflag & (CSIZE | PARENB | CSTOPB), static_cast<tcflag_t>(CS8));
 }
 
+// Of MAVLink each byte counts, line ends and zeros as well.
+TEST_F(SerialLinkTest, ReceivesBytesAsTheyAreWhereNoLinesAreWanted) {
+  const support::PseudoTerminal pty;
+  pty.PlugInAs(path_);
+  link_ = links_.Serial({.name = "radio", .device = path_.string(), .baud = 115200, .is_binary = true});
+  ASSERT_TRUE(Until([&] { return IsOpen(); })) << link_->fault();
+  const std::string bytes("\xFD\x09\0\0\r\n\x03\x13\xFF", 9);
+  pty.Write(bytes);
+  std::string received;
+  EXPECT_TRUE(Until([&] {
+    while (const auto piece = link_->Receive()) received += *piece;
+    return received.size() >= bytes.size();
+  }));
+  EXPECT_EQ(received, bytes);
+}
+
 TEST_F(SerialLinkTest, OpensAgainAfterItWasUnplugged) {
   auto first = std::make_unique<support::PseudoTerminal>();
   first->PlugInAs(path_);
@@ -89,6 +105,22 @@ TEST_F(SerialLinkTest, HasRoomForWhatItsSpeedCarries) {
   EXPECT_GT(num_bytes, 960 * elapsed_s - 200);
   EXPECT_LT(num_bytes, 960 * (elapsed_s + 0.6));
   EXPECT_EQ(Of("dropped"), 0);
+}
+
+TEST_F(SerialLinkTest, TellsWhenItsUnsentBytesHaveLeft) {
+  const support::PseudoTerminal pty;
+  pty.PlugInAs(path_);
+  Open(9600);  // 960 bytes/s
+  ASSERT_TRUE(Until([&] { return IsOpen() && link_->delay() == 0us; }));
+  link_->Send(std::string(240, 'a'));
+  EXPECT_GT(link_->delay(), 200ms);
+  EXPECT_LE(link_->delay(), 250ms);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(Until([&] {
+    pty.Read();
+    return link_->delay() == 0us;
+  }));
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, 200ms);
 }
 
 TEST_F(SerialLinkTest, DropsWhatItHasNoRoomFor) {

@@ -342,6 +342,31 @@ TEST_F(UdpTest, SendsADatagramForEachMessage) {
   EXPECT_EQ(link->fault(), "");
 }
 
+TEST_F(UdpTest, ReceivesWhatComesBackWhereThatIsWanted) {
+  Socket receiver(SOCK_DGRAM);
+  ASSERT_TRUE(receiver.Bind(0));
+  for (const bool receives : {true, false}) {
+    const auto link = links_.Udp({.name = "pilot", .address = "127.0.0.1", .port = receiver.port(), .receives = receives});
+    link->Send("to");
+    char bytes[100];
+    sockaddr_in sender{};
+    socklen_t size = sizeof sender;
+    ASSERT_TRUE(receiver.IsReadable(1000));
+    ASSERT_EQ(recvfrom(receiver.descriptor(), bytes, sizeof bytes, 0, reinterpret_cast<sockaddr*>(&sender), &size), 2);
+    // An empty datagram, one that is too long, and more than may wait.
+    const std::vector<std::uint8_t> long_one(3000, 0xFD);
+    for (int i = 0; i < 200; ++i) EXPECT_TRUE(receiver.SendTo(sender, std::span(long_one).first(i == 0 ? 0 : i == 1 ? 3000 : 5)));
+    PollFor(100ms);
+    int num_received = 0;
+    while (const auto message = link->Receive()) num_received += message->size() <= 2048 ? 1 : 0;
+    EXPECT_EQ(num_received > 0, receives);
+    EXPECT_LE(num_received, 64);
+    link->Send("on");
+    EXPECT_TRUE(receiver.IsReadable(1000));
+    receiver.Read();
+  }
+}
+
 // A receiver that is off kept the plotter degraded for good.
 TEST_F(UdpTest, SaysThatNobodyListensAndSendsOnWithoutAFault) {
   const int port = FreePort(SOCK_DGRAM);

@@ -241,6 +241,37 @@ TEST(Screen, ShowsWhichShipATrackIsWhereThereIsRoom) {
   EXPECT_FALSE(Has(lines, "MAYBE"));
 }
 
+// The lidar should see her and does not: people should know before they look at tracks.
+TEST(Screen, NamesShipsThatAisAloneTellsOf) {
+  for (const bool has_track : {true, false}) {
+    auto board = TrackedBoard(has_track ? std::vector{TrackAt(9, 50.0F)} : std::vector<track_t>{});
+    ais_t message{};
+    for (int i = 0; i < 5; ++i) {
+      auto& ship = message.ships.emplace_back();
+      ship = {};
+      ship.mmsi = 211000001 + i;
+      ship.name = i == 1 ? "EVER\x1B"
+                           "BEST"
+                         : "";
+      ship.state = i == 4 ? +ais_ship_t::STATE_NOT_IN_SIGHT : +ais_ship_t::STATE_AIS_ONLY;
+      ship.range_m = 40.0F - 5.0F * static_cast<float>(i);
+      ship.bearing_rad = 0.5F;
+    }
+    message.num_ships = 5;
+    Say(board, bus::kAis, message, 1.97);
+    const auto lines = Lines(DrawScreen(board, "title", At(2.0), {130, 40}));
+    EXPECT_TRUE(Has(lines, "AIS only, no track: 211000004 at 25.0 m, 029 deg from the bow"));
+    EXPECT_TRUE(Has(lines, "AIS only, no track: EVER"));
+    EXPECT_FALSE(Has(lines, "211000001")) << "the nearest three";
+    EXPECT_FALSE(Has(lines, "211000005"));
+    EXPECT_EQ(std::ranges::any_of(lines, [](const auto& line) { return line.starts_with("no track"); }), !has_track);
+    message.num_ships = 0;
+    message.ships.clear();
+    Say(board, bus::kAis, message, 1.98);
+    EXPECT_FALSE(Has(Lines(DrawScreen(board, "title", At(2.0), {130, 40})), "AIS only"));
+  }
+}
+
 TEST(Screen, SaysNoLookOutWhenAlertsAreOlderThanASecond) {
   const auto board = TrackedBoard({TrackAt(9, 50.0F)}, 1.0);
   EXPECT_FALSE(Has(Lines(DrawScreen(board, "title", At(1.9), {80, 40})), "NO LOOK-OUT"));

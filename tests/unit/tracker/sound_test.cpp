@@ -72,5 +72,18 @@ TEST_F(SoundTest, IsSilencedForThirtySecondsButForWhatIsGraverMeanwhile) {
   EXPECT_EQ(Scan({Of(1, kWarning)}), 1) << "nobody took note of it";
 }
 
+// Whatever was raised, acknowledged, silenced and cleared before, a further boat rings.
+TEST_F(SoundTest, IsOfAFurtherAlertAfterThousandsOfOthers) {
+  for (std::int64_t id = 1; id <= 3000; ++id) {
+    ASSERT_EQ(Scan({Of(id, kWarning)}), id);
+    if (id % 3 == 0) sound_.Silence(time_);
+    const auto state = id % 3 == 1 ? AlertState::kAcknowledged : AlertState::kActive;
+    ASSERT_EQ(Scan({Of(id, kWarning, state)}), id % 3 == 2 ? id : 0);
+    ASSERT_EQ(Scan({Of(id, kWarning, id % 2 == 0 ? AlertState::kCleared : AlertState::kRectified)}), 0);
+  }
+  EXPECT_EQ(Scan({Of(3001, kWarning), Of(3000, kWarning, AlertState::kRectified)}), 3001);
+  EXPECT_EQ(Scans(200, {Of(3001, kWarning)}), 3001);
+}
+
 }  // namespace
 }  // namespace lookout::tracker

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -299,9 +301,9 @@ class RelativeToTheBoat : public TrackerService {
     for (double& part : pose.velocity_map_mps) part = kNan;
   }
   // @param frame  its number; NaN: on the earth, the boat lies still
-  void SendScanOf(int number, double north_m, double frame) {
+  void SendScanOf(int number, double north_m, double frame, double east_m = 0.0) {
     const auto offset_us = test::kScanUs * number;
-    auto message = test::MakeObstacles(offset_us, number, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {0.0, north_m})});
+    auto message = test::MakeObstacles(offset_us, number, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {east_m, north_m})});
     for (auto pose_us = offset_us; pose_us < offset_us + test::kScanUs; pose_us += 20'000) {
       auto pose = test::MakePose(pose_us, pose_us / 20'000);
       if (std::isfinite(frame)) Move(pose, frame);
@@ -351,6 +353,33 @@ TEST_F(RelativeToTheBoat, AWarningComesOfWhatComesNearer) {
   ASSERT_EQ(tracks_.back().num_tracks, 1);
   EXPECT_NEAR(tracks_.back().tracks[0].velocity_map_mps[1], -3.0, 0.5);
   EXPECT_LT(tracks_.back().tracks[0].cpa_m, 2.0F);
+}
+
+// Each scan places it up to 0.4 m off in both directions. The alert comes once, grows once and does not waver.
+TEST_F(RelativeToTheBoat, AnAlertIsSteadyWhilePlacesAreNoisy) {
+  std::mt19937 generator(7);
+  const auto noise_m = [&generator] { return static_cast<double>(generator() % 801) * 0.001 - 0.4; };
+  std::set<std::int64_t> ids;
+  std::int32_t level = 0;
+  int num_scans_with = 0;
+  for (int i = 0; i < 190; ++i) {
+    const double north_m = 60.0 - 0.3 * i + noise_m();
+    SendScanOf(i, north_m, kFrame, noise_m());
+    if (alerts_.empty() || alerts_.back().alerts.empty()) {
+      ASSERT_TRUE(ids.empty()) << i << ": it is gone";
+      continue;
+    }
+    ASSERT_EQ(alerts_.back().num_alerts, 1) << i;
+    const auto& alert = alerts_.back().alerts[0];
+    ids.insert(alert.id);
+    EXPECT_EQ(alert.state, alert_t::STATE_ACTIVE) << i;
+    EXPECT_GE(alert.level, level) << i;
+    level = alert.level;
+    ++num_scans_with;
+  }
+  EXPECT_EQ(ids.size(), 1U);
+  EXPECT_EQ(level, alert_t::LEVEL_WARNING);
+  EXPECT_GT(num_scans_with, 60);
 }
 
 TEST_F(RelativeToTheBoat, AThingThatKeepsItsPlaceBesideTheBoatIsATrack) {
