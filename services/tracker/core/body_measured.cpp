@@ -29,9 +29,9 @@ constexpr double kFarSdPerWidth = 0.5;
 // A measurement that is shorter than the known outline is a part: by so many deviations, and by a share of the size.
 constexpr double kPartSds = 2.0;
 constexpr double kPartShare = 0.15;
-// Variance of where a part lies, by the square of its room: the most that it can be. Parts are rather at the ends, as the stern of a boat whose bow is
-// low, than evenly spread (1/12).
-constexpr double kPartVariance = 1.0 / 4.0;
+// Variance of what lies between two places, by the square of the room: the most that it can be. Parts are rather at the ends, as the stern of a boat
+// whose bow is low, than evenly spread (1/12).
+constexpr double kBetweenVariance = 1.0 / 4.0;
 
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -138,39 +138,34 @@ std::optional<std::size_t> Body::PartOf(const Measured& measured, const Eigen::M
   return best;
 }
 
-// Of the whole thing each edge says where it is, from where it is known to be.
-Body::Displacements Body::DisplacementsOfEdges(const Measured& measured, const Reaches& known) const {
+// Each edge says how far the thing is from its position. Where both ends of a direction do, and differ, the thing lies between: a part lies somewhere
+// in what is known, and what was known lies somewhere in what is longer than that.
+Body::Displacements Body::DisplacementsOf(const Measured& measured, const Reaches& known) const {
   const auto directions = SideDirections();
   const Eigen::Vector2d position = position_m();
-  Displacements told;
-  for (std::size_t i = 0; i < kDirections; ++i) {
-    if (measured.kind[i] != Measured::Kind::kEdge) continue;
-    const double off_m = measured.reach_m[i] - directions[i].dot(position) - known[i].reach_m;
-    told.Add({directions[i], off_m, measured.variance_m2[i] + known[i].variance_m2});
-  }
-  return told;
-}
-
-// A part lies somewhere in the thing, from end to end: across each direction the thing is displaced by as much as its nearer end allows, or as its
-// farther end does, or by anything between.
-Body::Displacements Body::DisplacementsOfPart(const Measured& measured, const Reaches& known) const {
-  const auto directions = SideDirections();
-  const Eigen::Vector2d position = position_m();
+  const bool is_part = measured.short_m > 0.0;
   Displacements told;
   for (std::size_t i = 0; i < kDirections / 2; ++i) {
     const std::size_t j = Opposite(i);
     const double at_m = directions[i].dot(position);
-    const double least_m = measured.reach_m[i] - at_m - known[i].reach_m;
-    const double most_m = known[j].reach_m - measured.reach_m[j] - at_m;
-    const double room_m = std::max(0.0, most_m - least_m);
-    told.Add({directions[i], 0.5 * (least_m + most_m), measured.variance_m2[i] + known[i].variance_m2 + kPartVariance * room_m * room_m});
+    const double off_m = measured.reach_m[i] - at_m - known[i].reach_m;
+    const double opposite_off_m = known[j].reach_m - measured.reach_m[j] - at_m;
+    const double room_m = opposite_off_m - off_m;  // below 0 where more is seen than is known
+    const bool has_end = measured.kind[i] == Measured::Kind::kEdge;
+    const bool has_opposite_end = measured.kind[j] == Measured::Kind::kEdge;
+    // A part that is longer than the thing is none: its ends speak against each other.
+    const bool lies_between = is_part ? room_m > 0.0 : has_end && has_opposite_end;
+    const double num_ends = static_cast<double>(has_end) + static_cast<double>(has_opposite_end);
+    const double between_m2 = lies_between ? num_ends * kBetweenVariance * room_m * room_m : 0.0;
+    if (has_end) told.Add({directions[i], off_m, measured.variance_m2[i] + known[i].variance_m2 + between_m2});
+    if (has_opposite_end) told.Add({directions[i], opposite_off_m, measured.variance_m2[j] + known[j].variance_m2 + between_m2});
   }
   return told;
 }
 
 Body::Shift Body::ShiftOf(const Measured& measured, const Reaches& known, const Eigen::Matrix2d& noise_m2, double range_m) const {
   const bool is_part = measured.short_m > 0.0;
-  const Displacements told = is_part ? DisplacementsOfPart(measured, known) : DisplacementsOfEdges(measured, known);
+  const Displacements told = DisplacementsOf(measured, known);
   constexpr double kNothing = 1e-6;  // 1/m2, where no side is an edge
   Eigen::Matrix2d information = kNothing * Eigen::Matrix2d::Identity();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();

@@ -24,7 +24,7 @@ struct Body::Measured {
 struct Body::Displacements {
   struct One {
     Eigen::Vector2d direction = Eigen::Vector2d::Zero();
-    double off_m = 0.0;
+    double off_m = 0.0;  // along it
     double variance_m2 = 0.0;
   };
   std::array<One, kDirections> ones{};
