@@ -24,7 +24,7 @@ constexpr double kMaxRateRadps = 100.0;
 constexpr double kMaxHdop = 100.0;
 constexpr double kMinHdop = 0.35;
 constexpr double kMaxSdM = 1e6;
-// Single precision rounds half a turn upwards.
+// Pi as a single-precision number is greater than pi.
 constexpr double kRoundingRad = 1e-6;
 
 constexpr double kDegPerE7 = 1e-7;
