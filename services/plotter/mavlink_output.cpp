@@ -87,6 +87,8 @@ void MavlinkOutput::SendText(MavSeverity severity, std::string_view text) {
 
 void MavlinkOutput::TellWhetherSomebodyLooks(const Told& told) {
   if (told_looks_ == told.somebody_looks) return;
+  // That somebody looks is told by a look, not by nothing that speaks against it.
+  if (told.somebody_looks && told.look == nullptr) return;
   // The chain may begin with this process.
   if (!told.somebody_looks && !told_looks_ && told.passed < kPatience) return;
   if (told.somebody_looks) {
@@ -102,7 +104,7 @@ void MavlinkOutput::SendNotices(const Told& told) {
     // In step, so that a late call delays no later one.
     const bool is_late = !heartbeat_sent_ || told.passed - *heartbeat_sent_ >= 2 * kHeartbeatPeriod;
     heartbeat_sent_ = is_late ? told.passed : *heartbeat_sent_ + kHeartbeatPeriod;
-    SendSurely(writer_.Heartbeat(told.somebody_looks ? MavState::kActive : MavState::kCritical), "heartbeat");
+    SendSurely(writer_.Heartbeat(told.somebody_looks && told_looks_ == true ? MavState::kActive : MavState::kCritical), "heartbeat");
   }
   TellWhetherSomebodyLooks(told);
   if (!params().mavlink.sends_alerts) return;

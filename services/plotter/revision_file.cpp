@@ -35,9 +35,10 @@ std::vector<ToldNotice> RevisionFile::Read() const {
   ToldNotice told;
   while (in >> told.notice.id >> cause >> raised_us >> level >> state >> sound >> told.notice.escalation >> told.revision) {
     const auto raised = UtimeFromWire(raised_us);
-    const bool is_good = raised && told.revision >= 1 && told.revision <= kMostRevision && told.notice.escalation >= 0 &&
-                         told.notice.escalation <= kMostEscalation && notices.size() < kMostNotices;
+    const bool is_good =
+        raised && told.revision >= 1 && told.revision <= kMostRevision && told.notice.escalation >= 0 && told.notice.escalation <= kMostEscalation;
     if (!is_good) return {};
+    if (notices.size() == kMostNotices) return notices;  // those that stand come first
     told.notice.cause = static_cast<Cause>(cause);
     told.notice.raised = *raised;
     told.notice.level = static_cast<Level>(level);

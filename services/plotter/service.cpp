@@ -253,7 +253,7 @@ void Service::ComposeNotices() {
     // One that was there before this process is as old as the clock says.
     const auto age = now_ ? std::chrono::duration_cast<std::chrono::microseconds>(*now_ - notice.changed) : 0us;
     const auto begin = known != unchanged_since_.end() ? known->second : passed_.passed() - std::max(age, 0us);
-    since.emplace(key, begin);
+    if (now_) since.emplace(key, begin);
     notice.unchanged_for = passed_.passed() - begin;
   }
   unchanged_since_ = std::move(since);

@@ -26,6 +26,7 @@ std::string RefusalsInWords(const health_t& health) {
                                                                     {"ais_bad_field", "with a wrong field"},
                                                                     {"ais_bad_armour", "with characters that AIS has not"},
                                                                     {"ais_parts_out_of_order", "of several parts out of order"},
+                                                                    {"ais_parts_mixed", "of several parts, mixed by two receivers"},
                                                                     {"ais_parts_timed_out", "of which a part did not come"},
                                                                     {"messages_too_short", "too short"},
                                                                     {"messages_bad_mmsi", "without an MMSI"},

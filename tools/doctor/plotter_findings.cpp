@@ -24,13 +24,13 @@ std::int64_t Grown(const ProcessSeen& process, const std::string& name) {
 }
 
 // An autopilot tells of itself once a second over each link that it uses. Nullopt: the output has none.
-std::optional<Finding> CheckAutopilot(const ProcessSeen& process, const std::string& output, double watched_s) {
+std::optional<Finding> CheckAutopilot(const ProcessSeen& process, const std::string& output) {
   const auto counter = "output_" + output + "_heartbeats";
   const auto num_heartbeats = CountOf(process.last, counter);
   if (!num_heartbeats || Grown(process, counter) > 0) return std::nullopt;
-  // HEALTH comes once a second, so a short watch may lie between two heartbeats.
+  // HEALTH comes once a second, so a short watch may lie between two heartbeats; and the plotter may just have begun.
   constexpr double kLeastWatchS = 4.0;
-  if (*num_heartbeats > 0 && watched_s < kLeastWatchS) return std::nullopt;
+  if (1e-6 * static_cast<double>(process.last.utime_us - process.first.utime_us) < kLeastWatchS) return std::nullopt;
   const auto text = *num_heartbeats == 0 ? "no HEARTBEAT of an autopilot has come back" : "the autopilot's HEARTBEAT has stopped";
   return Warning(
       kSubject, "output '" + output + "' sends, but " + text,
@@ -38,7 +38,7 @@ std::optional<Finding> CheckAutopilot(const ProcessSeen& process, const std::str
       "that holds its answers back");
 }
 
-Finding CheckOutput(const ProcessSeen& process, const std::string& output, double watched_s) {
+Finding CheckOutput(const ProcessSeen& process, const std::string& output) {
   const auto who = "output '" + output + "' ";
   const auto counter = "output_" + output;
   const auto num_clients = CountOf(process.last, counter + "_clients");
@@ -55,7 +55,7 @@ Finding CheckOutput(const ProcessSeen& process, const std::string& output, doubl
     return Warning(kSubject, who + "takes nothing: " + Count(num_unsent, "message") + " not sent",
                    "the process line above; whether the plotter is on");
   }
-  if (auto silent = CheckAutopilot(process, output, watched_s)) return *silent;
+  if (auto silent = CheckAutopilot(process, output)) return *silent;
   // Over UDP nobody confirms, but who is off may be told of.
   if (Grown(process, counter + "_unheard") > 0) return Ok(kSubject, who + "sends, but nobody listens there: the receiver is off");
   const auto num_sent = Grown(process, counter + "_sent");
@@ -76,7 +76,7 @@ Findings CheckPlotter(const Observations& seen) {
     for (const auto& counter : process.last.counters) {
       const std::string_view name = counter.name;
       if (!name.starts_with(kOutput) || !name.ends_with(kSent)) continue;
-      findings.push_back(CheckOutput(process, std::string(name.substr(kOutput.size(), name.size() - kOutput.size() - kSent.size())), seen.watched_s));
+      findings.push_back(CheckOutput(process, std::string(name.substr(kOutput.size(), name.size() - kOutput.size() - kSent.size()))));
     }
   }
   return findings;

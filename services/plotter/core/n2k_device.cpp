@@ -59,9 +59,10 @@ N2kMessage RequestOfAddresses() {
   return message;
 }
 
-// Control byte 1: no.
-N2kMessage NoMessage(std::uint32_t pgn, std::uint8_t destination) {
-  N2kMessage message{.pgn = kAcknowledgement, .priority = kPriority, .payload = {1, 0xFF, 0xFF, 0xFF, 0xFF}, .destination = destination};
+// Control byte 1: no such PGN; 3: cannot respond, of a PGN that comes by itself.
+N2kMessage NoMessage(std::uint32_t pgn, bool is_sent, std::uint8_t destination) {
+  const auto control = static_cast<std::uint8_t>(is_sent ? 3 : 1);
+  N2kMessage message{.pgn = kAcknowledgement, .priority = kPriority, .payload = {control, 0xFF, 0xFF, 0xFF, 0xFF}, .destination = destination};
   AddLittleEndian(message.payload, pgn, kPgnBytes);
   return message;
 }
@@ -261,7 +262,7 @@ void N2kDevice::Answer(std::uint32_t pgn, const N2kHeader& header) {
     case kHeartbeat:
       return Send(HeartbeatMessage(heartbeat_), address_);
     default:
-      return Send(NoMessage(pgn, header.source), address_);
+      return Send(NoMessage(pgn, std::ranges::find(identity_.sent_pgns, pgn) != identity_.sent_pgns.end(), header.source), address_);
   }
 }
 

@@ -128,6 +128,9 @@ TEST(DoctorPlotter, NamesAnAutopilotThatIsNotHeard) {
   auto& plotter = seen.processes["plotter"].front();
   Say(plotter, "output_pilot_sent", 100, 180);
   Say(plotter, "output_pilot_heartbeats", 0, 0);
+  plotter.last.utime_us = plotter.first.utime_us + 2'000'000;
+  EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kOk, "output 'pilot' sends, 80 messages taken");
+  plotter.last.utime_us = plotter.first.utime_us + 8'000'000;
   EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "output 'pilot' sends, but no HEARTBEAT of an autopilot has come back");
   Say(plotter, "output_pilot_unheard", 0, 4);
   EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "no HEARTBEAT of an autopilot has come back");

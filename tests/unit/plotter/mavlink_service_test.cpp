@@ -101,6 +101,18 @@ TEST_F(MavlinkService, SendsNoDistanceBetweenTheTextsThatNoneAreSentAndThatTheyA
   }
 }
 
+// The segmenter never ran: the text said that the look-out begins, and the heartbeat that it is active, for a second.
+TEST_F(MavlinkService, DoesNotBeginToLookBeforeALookHasSeen) {
+  sends_scan_ = false;
+  Run(60);
+  EXPECT_EQ(Texts(), std::vector<std::string>{"Lookout: no look-out, no distances are sent"});
+  for (const auto& frame : Frames(support::kHeartbeatId)) EXPECT_EQ(frame.At<std::uint8_t>(7), 5);  // MAV_STATE_CRITICAL
+  sends_scan_ = true;
+  Run(15);
+  EXPECT_EQ(Texts().back(), "Lookout: the look-out is back");
+  EXPECT_EQ(Frames(support::kHeartbeatId).back().At<std::uint8_t>(7), 4);  // MAV_STATE_ACTIVE
+}
+
 // An autopilot needs no position of ours; but it gets no word of clear water where no scan comes.
 TEST_F(MavlinkService, IsHealthyWithoutAPositionAndNotWithoutTheScan) {
   pose_status_ = pose_t::STATUS_UNKNOWN;

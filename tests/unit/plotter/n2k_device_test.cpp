@@ -147,10 +147,10 @@ TEST_F(PlotterN2kDevice, AnswersRequests) {
             "19EE0123 00 16 00 00 E8 00 00 EA\r\n19EE0123 01 00 00 EE 00 00 EE 01\r\n19EE0123 02 11 F0 01 14 F0 01 08\r\n"
             "19EE0123 03 F6 01 FF FF FF FF FF\r\n"
             "19EE0123 00 0A 01 00 EA 00 00 EE\r\n19EE0123 01 00 D8 FE 00 FF FF FF\r\n");
-  // Another PGN is refused where we are asked alone, also one that comes by itself: that request got no answer at all.
+  // Another PGN is refused where we are asked alone, also one that comes by itself (control byte 3): that request got no answer at all.
   EXPECT_EQ(Answer("18EA2301 00 F1 01"), "18E80123 01 FF FF FF FF 00 F1 01\r\n");
   EXPECT_EQ(Answer("18EAFF01 00 F1 01"), "");
-  EXPECT_EQ(Answer("18EA2301 08 F6 01"), "18E80123 01 FF FF FF FF 08 F6 01\r\n");
+  EXPECT_EQ(Answer("18EA2301 08 F6 01"), "18E80123 03 FF FF FF FF 08 F6 01\r\n");
   EXPECT_EQ(Answer("18EAFF01 08 F6 01"), "");
   EXPECT_EQ(Answer("18EA2301 01 F8 01"), "18E80123 01 FF FF FF FF 01 F8 01\r\n");
 }
