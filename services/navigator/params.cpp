@@ -29,11 +29,15 @@ static_assert(static_cast<int>(Role::kAll) == config::NavigationInput::ALL && st
               static_cast<int>(Role::kAttitude) == config::NavigationInput::ATTITUDE &&
               static_cast<int>(Role::kImu) == config::NavigationInput::IMU &&
               static_cast<int>(Role::kNothing) == config::NavigationInput::RECORD_ONLY);
+static_assert(static_cast<int>(Protocol::kNmea0183) == config::NavigationInput::NMEA0183 &&
+              static_cast<int>(Protocol::kMavlink) == config::NavigationInput::MAVLINK);
 
 SourceParams ToSource(const config::NavigationInput& input) {
   SourceParams source;
   source.name = input.name();
   source.role = static_cast<Role>(input.role());
+  source.protocol = static_cast<Protocol>(input.protocol());
+  source.mavlink_system_id = input.mavlink_system_id();
   source.requires_checksum = input.checksum_required();
   if (input.has_latency_s()) source.latency = ToMicroseconds(input.latency_s());
   source.roll_sign = input.roll_positive() == config::NavigationInput::PORT_DOWN ? -1.0 : 1.0;
@@ -112,6 +116,7 @@ class InputsReader {
     } else {
       RequireOfInput(num_kinds == 1, "must have one of serial, udp, tcp, gpsd and text_log, and has " + std::to_string(num_kinds));
     }
+    CheckProtocol(input);
     params.navigator.sources.push_back(ToSource(input));
     if (num_kinds != 1 || is_given_above) return;
     const auto connection = ToConnection(input);
@@ -122,6 +127,21 @@ class InputsReader {
       RequireOfInput(places_.insert(PlaceOf(connection)).second, PlaceOf(connection) + " is used by an input before it");
     }
     params.connections.push_back(connection);
+  }
+
+  // MAVLink states checksums, signs and true headings itself: a setting for them would be an error that nobody sees.
+  void CheckProtocol(const config::NavigationInput& input) {
+    if (input.protocol() != config::NavigationInput::MAVLINK) {
+      RequireOfInput(!input.has_mavlink_system_id(), "mavlink_system_id is for protocol MAVLINK: add that, or remove it");
+      return;
+    }
+    RequireOfInput(input.has_serial() || input.has_udp(), "protocol MAVLINK needs serial or udp of this input's own");
+    RequireOfInput(input.role() != config::NavigationInput::IMU, "role IMU: no IMU samples are read from MAVLINK");
+    RequireOfInput(input.checksum_required(), "checksum_required must not be false with MAVLINK, which always has checksums");
+    RequireOfInput(!input.has_roll_positive() && !input.has_pitch_positive(),
+                   "roll_positive and pitch_positive are fixed by MAVLINK: remove them, and correct AHRS_ORIENTATION in the autopilot");
+    RequireOfInput(!input.has_deviation_deg() && !input.has_declination_deg(),
+                   "deviation_deg and declination_deg are not for MAVLINK: the autopilot states its heading from true north");
   }
 
   Connection ToConnection(const config::NavigationInput& input) {

@@ -13,6 +13,7 @@
 #include "common/core/elementary.hpp"
 #include "common/io/text_file.hpp"
 #include "services/navigator/core/lines.hpp"
+#include "services/navigator/core/mavlink_lines.hpp"
 #include "services/navigator/core/nmea.hpp"
 #include "services/navigator/params.hpp"
 
@@ -100,7 +101,16 @@ std::string SourceInWords(const Params& params, const SourceParams& source) {
   const double roll_rad = source.roll_sign * DegToRad(kExampleDeg) + navigator.roll_offset_rad;
   const double ahead_up_m = kExampleM * Sin(pitch_rad);
   const double starboard_up_m = -kExampleM * Sin(roll_rad);
-  std::string words = fmt::format("# input '{}': {}; {}.\n", source.name, PlaceInWords(params, source.name), RoleInWords(source.role));
+  const bool is_autopilot = source.protocol == Protocol::kMavlink;
+  std::string words = fmt::format(
+      "# input '{}': {}; {}{}.\n", source.name, PlaceInWords(params, source.name),
+      is_autopilot ? fmt::format("MAVLink of system {}, component {}; ", source.mavlink_system_id, MavlinkCutter::kAutopilotComponent) : "",
+      RoleInWords(source.role));
+  if (is_autopilot && (source.role == Role::kAll || source.role == Role::kGnss)) {
+    words +=
+        "#   positions are those of the autopilot's own origin, and only while its receiver has a fix: gnss_antenna of boat.txtpb must be that "
+        "place\n";
+  }
   if (source.role == Role::kAll || source.role == Role::kAttitude) {
     words += fmt::format("#   pitch: bow {} is positive; where the sensor says +5 deg, an object 10 m ahead along the deck would be at {}",
                          source.pitch_sign > 0 ? "up" : "down", HeightInWords(ahead_up_m));
@@ -108,7 +118,7 @@ std::string SourceInWords(const Params& params, const SourceParams& source) {
         fmt::format("#   roll: {} side down is positive; where the sensor says +5 deg, an object 10 m to starboard along the deck would be at {}",
                     source.roll_sign > 0 ? "starboard" : "port", HeightInWords(starboard_up_m));
   }
-  if (source.role != Role::kGnss && source.role != Role::kImu && source.role != Role::kNothing) {
+  if (!is_autopilot && source.role != Role::kGnss && source.role != Role::kImu && source.role != Role::kNothing) {
     words += fmt::format("#   magnetic headings (HDG, HDM): {} and {} given here; {}.\n", source.deviation_rad ? "deviation" : "no deviation",
                          source.declination_rad ? "declination" : "no declination",
                          source.deviation_rad && source.declination_rad

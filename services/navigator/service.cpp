@@ -24,6 +24,9 @@ std::string InSeconds(std::chrono::microseconds duration) {
 }  // namespace
 
 Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(params), navigator_(params.navigator) {
+  for (const auto& source : params_.navigator.sources) {
+    if (source.protocol == Protocol::kMavlink) autopilots_.emplace(source.name, MavlinkCutter(source.mavlink_system_id));
+  }
   if (params_.reads_nav_raw) {
     bus::Subscribe<nav_raw_t>(bus_, bus::kNavRaw, [this](const nav_raw_t& message) { OnNavRaw(message); });
     return;
@@ -37,15 +40,26 @@ Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(param
 }
 
 void Service::OnDatagram(Utime arrival, Bytes payload, const std::string& source, const std::string& sender) {
+  if (const auto autopilot = autopilots_.find(source); autopilot != autopilots_.end()) {
+    return OnMavlink(arrival, autopilot->second.Add(arrival, payload, sender), source);
+  }
   if (sender.empty()) return OnLines(arrival, SplitDatagram(payload), source);
   const auto settings = std::ranges::find(params_.navigator.sources, source, &SourceParams::name);
   const bool requires_checksum = settings == params_.navigator.sources.end() || settings->requires_checksum;
   OnLines(arrival, joiners_[source].Add(arrival, payload, sender, requires_checksum), source);
 }
 
-void Service::OnStream(Utime arrival, Bytes bytes, const std::string& source) { OnLines(arrival, assemblers_[source].Add(bytes), source); }
+void Service::OnStream(Utime arrival, Bytes bytes, const std::string& source) {
+  if (const auto autopilot = autopilots_.find(source); autopilot != autopilots_.end()) {
+    return OnMavlink(arrival, autopilot->second.Add(arrival, bytes), source);
+  }
+  OnLines(arrival, assemblers_[source].Add(bytes), source);
+}
 
-void Service::OnStreamEnd(const std::string& source) { assemblers_[source].Clear(); }
+void Service::OnStreamEnd(const std::string& source) {
+  if (const auto autopilot = autopilots_.find(source); autopilot != autopilots_.end()) return autopilot->second.Clear();
+  assemblers_[source].Clear();
+}
 
 void Service::OnLines(Utime arrival, const DatagramLines& lines, const std::string& source) {
   if (params_.reads_nav_raw) return;
@@ -58,6 +72,13 @@ void Service::OnLines(Utime arrival, const DatagramLines& lines, const std::stri
   counts_["not_printable"] += lines.num_not_printable;
   counts_["cut_off"] += lines.num_cut_off;
   PublishAndConsume(sequencer_.OnLines(arrival, lines.lines, source));
+}
+
+void Service::OnMavlink(Utime arrival, const MavlinkLines& found, const std::string& source) {
+  counts_["mavlink_bad_checksum"] += found.num_bad_checksum;
+  counts_["mavlink_other_sender"] += found.num_other_sender;
+  counts_["mavlink_skipped_bytes"] += found.num_skipped_bytes;
+  OnLines(arrival, {.lines = found.lines}, source);
 }
 
 void Service::AdvanceTo(Utime host_time) {

@@ -16,6 +16,7 @@
 #include "lookout/nav_raw_t.hpp"
 #include "services/navigator/core/item_sequencer.hpp"
 #include "services/navigator/core/lines.hpp"
+#include "services/navigator/core/mavlink_lines.hpp"
 #include "services/navigator/core/navigator.hpp"
 #include "services/navigator/params.hpp"
 #include "services/navigator/wire.hpp"
@@ -26,7 +27,8 @@ class Service {
  public:
   Service(bus::Bus& bus, const Params& params);
 
-  /// NMEA 0183 from outside. Each line is published as NAV_RAW, and then exactly that message is consumed. Not for a service that reads NAV_RAW.
+  /// NMEA 0183, or MAVLink of a source whose protocol that is, from outside. Each line is published as NAV_RAW, and then exactly that message is
+  /// consumed. Not for a service that reads NAV_RAW.
   ///
   /// @param source  IsSourceName
   /// @param sender  address and port: lines may be cut over datagrams of one sender. Empty: the lines of each datagram are complete
@@ -52,6 +54,7 @@ class Service {
 
  private:
   void OnLines(Utime arrival, const DatagramLines& lines, const std::string& source);
+  void OnMavlink(Utime arrival, const MavlinkLines& found, const std::string& source);
   void OnLidarNmea(const lidar_nmea_t& message);
   void OnLidarOdometry(const lidar_odometry_t& message);
   void OnNavRaw(const nav_raw_t& message);
@@ -63,6 +66,7 @@ class Service {
   Params params_;
   std::map<std::string, LineAssembler> assemblers_;  // by source
   std::map<std::string, DatagramJoiner> joiners_;    // by source
+  std::map<std::string, MavlinkCutter> autopilots_;  // the sources whose protocol is MAVLink
   ItemSequencer sequencer_;
   Navigator navigator_;
   std::int64_t raw_seq_ = 0;  // of the item that is being consumed
@@ -70,9 +74,9 @@ class Service {
   std::int64_t attitude_seq_ = 0;
   std::int64_t pose_seq_ = 0;
 
-  static constexpr auto kCountNames =
-      std::to_array<std::string_view>({"no_start", "too_long", "not_printable", "cut_off", "bad_host_time", "lidar_nmea_bad", "lidar_odometry_bad",
-                                       kRawTime, kRawKind, kRawText, kRawImu, "nav_raw_backwards"});
+  static constexpr auto kCountNames = std::to_array<std::string_view>(
+      {"no_start", "too_long", "not_printable", "cut_off", "bad_host_time", "lidar_nmea_bad", "lidar_odometry_bad", kRawTime, kRawKind, kRawText,
+       kRawImu, "nav_raw_backwards", "mavlink_bad_checksum", "mavlink_other_sender", "mavlink_skipped_bytes"});
   Counts<kCountNames> counts_;
 };
 

@@ -55,6 +55,9 @@ void WriteOuster(const Folder& folder);
 /// Texts that lookout-archive reads.
 void WriteArchiveTexts(const Folder& folder);
 
+/// Messages of an autopilot.
+void WriteAutopilot(const Folder& folder);
+
 // In corpus_ais.cpp
 void WriteAis(const Folder& folder);
 

@@ -476,6 +476,7 @@ int main(int argc, char** argv) try {
   WriteAis(Folder(root / "fuzz_ais"));
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
   WriteMotions(Folder(root / "fuzz_odometry_line"));
+  WriteAutopilot(Folder(root / "fuzz_mavlink"));
   WriteAnswers(Folder(root / "fuzz_plotter"));
   WriteTypedAnswers(Folder(root / "fuzz_setup"));
   WriteCaptures(Folder(root / "fuzz_capture"));

@@ -6,11 +6,14 @@
 #include <set>
 
 #include "common/bus/decode.hpp"
+#include "common/core/angles.hpp"
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
+#include "tests/support/counters.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/memory_bus.hpp"
+#include "tests/unit/navigator/mavlink_frames.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -31,6 +34,10 @@ Params TestParams(bool reads_nav_raw) {
   ahrs.roll_sign = -1.0;
   ahrs.deviation_rad = 0.01;
   params.navigator.sources.push_back(ahrs);
+  SourceParams pilot;
+  pilot.name = "pilot";
+  pilot.protocol = Protocol::kMavlink;
+  params.navigator.sources.push_back(pilot);
   return params;
 }
 
@@ -51,6 +58,7 @@ Sent RunFromOutside(unsigned seed) {
   double time_s = 0.0;
   std::string lidar_line = RmcLine(NoonPlus(0), kLatitudeDeg, kLongitudeDeg, 1.0, 0.0);
   std::string stream;
+  std::string pilot_stream;
   for (int i = 0; i < 3000; ++i) {
     time_s += uniform(0.0, 0.02);
     if (i == 1000) time_s -= 5.0;
@@ -92,6 +100,15 @@ Sent RunFromOutside(unsigned seed) {
     const auto size = std::min<std::size_t>(stream.size(), random() % 200);
     service.OnStream(NoonPlus(time_s), ToBytes(stream.substr(0, size)), "ahrs");
     stream.erase(0, size);
+    // An autopilot by datagrams that a gateway cuts anywhere, damaged at times, and with messages of others between its own.
+    const auto boot_ms = static_cast<std::uint32_t>(1000.0 * (time_s + 10.0));
+    pilot_stream += AttitudeFrame(boot_ms, 0.05F, -0.03F, static_cast<float>(DegToRad(heading_deg) - kPi), 0.17F);
+    if (i % 10 == 0) pilot_stream += PositionFrame(boot_ms, latitude_deg, kLongitudeDeg, 1.0, 0.5, 200'000) + support::AutopilotHeartbeat();
+    if (i % 50 == 0) pilot_stream += GpsFrame(static_cast<int>(random() % 7), 800, 250'000, 4500);
+    if (random() % 20 == 0) pilot_stream[random() % pilot_stream.size()] = static_cast<char>(random());
+    const auto pilot_size = std::min<std::size_t>(pilot_stream.size(), random() % 300);
+    service.OnDatagram(NoonPlus(time_s), ToBytes(pilot_stream.substr(0, pilot_size)), "pilot", random() % 50 == 0 ? "b" : "a");
+    pilot_stream.erase(0, pilot_size);
     if (random() % 100 == 0) {
       service.OnStreamEnd("ahrs");
       stream.clear();
@@ -104,6 +121,8 @@ Sent RunFromOutside(unsigned seed) {
   }
   service.Finish(NoonPlus(time_s + 0.013));
   Drain(bus);
+  for (const char* name : {"mavlink_bad_checksum", "mavlink_skipped_bytes", "pilot_understood"})
+    EXPECT_GT(support::CountOf(service, name), 0) << name;
   return sent;
 }
 

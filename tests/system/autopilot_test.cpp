@@ -59,7 +59,7 @@ TEST_F(Autopilot, GetsDistancesAndIsToldWhenNobodyLooks) {
   // Its heartbeat comes back to the port that sends.
   sockaddr_in sender{};
   socklen_t size = sizeof sender;
-  ASSERT_TRUE(socket_.IsReadable(1000));
+  ASSERT_TRUE(socket_.IsReadable(5000)) << "no scan is sent meanwhile, and a HEARTBEAT comes once a second";
   ASSERT_GT(recvfrom(socket_.descriptor(), nullptr, 0, MSG_PEEK, reinterpret_cast<sockaddr*>(&sender), &size), -1);
   EXPECT_EQ(CountOf(health_, "output_udp_heartbeats"), 0);
   const auto heartbeat = AutopilotHeartbeat();

@@ -12,6 +12,7 @@
 #include "common/core/angles.hpp"
 #include "common/core/datum_check.hpp"
 #include "common/core/utime.hpp"
+#include "services/navigator/core/mavlink_lines.hpp"
 #include "tools/doctor/findings.hpp"
 
 namespace lookout::doctor {
@@ -21,6 +22,7 @@ namespace {
 constexpr const char* kGnssSubject = "gnss";
 constexpr const char* kHeadingSubject = "heading";
 constexpr const char* kAttitudeSubject = "attitude";
+constexpr const char* kInputSubject = "input";
 
 constexpr double kFixSilenceS = 2.0;     // two periods of a receiver that gives one fix a second
 constexpr double kPoorFixM = 5.0;        // twice GNSS without correction: position_sd_m of navigator.proto
@@ -147,6 +149,42 @@ std::optional<Finding> CheckDatum(const Observations& seen) {
   return Warning(kGnssSubject, complaint, "correct datum in boat.txtpb, or remove it: then the first fix is the datum");
 }
 
+// nullptr: the input is none.
+const navigator::SourceParams* AutopilotOf(const Observations& seen, const std::string& name) {
+  const auto& sources = seen.config.navigation->navigator.sources;
+  const auto source = std::ranges::find(sources, name, &navigator::SourceParams::name);
+  return source != sources.end() && source->protocol == navigator::Protocol::kMavlink ? &*source : nullptr;
+}
+
+// Each kind of message is switched on by itself, and another receiver or compass hides that one is missing.
+Findings CheckAutopilots(const Observations& seen) {
+  Findings findings;
+  for (const auto& [name, num_messages] : seen.navigation.num_by_source) {
+    const auto* autopilot = AutopilotOf(seen, name);
+    if (autopilot == nullptr) continue;
+    const auto found = seen.navigation.told_by_source.find(name);
+    const auto told = found == seen.navigation.told_by_source.end() ? InputSeen{} : found->second;
+    const auto role = autopilot->role;
+    const bool gives_place = role == navigator::Role::kAll || role == navigator::Role::kGnss;
+    const bool gives_heading = role == navigator::Role::kAll || role == navigator::Role::kHeading || role == navigator::Role::kAttitude;
+    if (gives_place && told.num_places == 0) {
+      findings.push_back(Warning(kInputSubject, fmt::format("'{}' gives no position: no GLOBAL_POSITION_INT comes from the autopilot", name),
+                                 "SRn_POSITION 10 for its port (ArduPilot), mavlink stream (PX4); the autopilot's own alignment"));
+    } else if (gives_place && told.num_fixes == 0) {
+      findings.push_back(Warning(kInputSubject,
+                                 fmt::format("'{}' gives positions without a fix: no GPS_RAW_INT of three dimensions comes beside them, and they are "
+                                             "not used",
+                                             name),
+                                 "SRn_EXT_STAT 2 for its port (ArduPilot), mavlink stream (PX4); the view of the sky of the autopilot's antenna"));
+    }
+    if (gives_heading && told.num_attitudes == 0) {
+      findings.push_back(Warning(kInputSubject, fmt::format("'{}' gives no heading: no ATTITUDE comes from the autopilot", name),
+                                 "SRn_EXTRA1 20 for its port (ArduPilot), mavlink stream (PX4)"));
+    }
+  }
+  return findings;
+}
+
 // Those that the config names one by one: "udp" is open on many boats that have nothing there. One that cannot be opened is told already.
 Findings CheckSilence(const Observations& seen) {
   Findings findings;
@@ -156,7 +194,16 @@ Findings CheckSilence(const Observations& seen) {
     if (name == "udp" || connection.kind == navigator::Connection::Kind::kTextLog || is_at_fault || seen.navigation.num_by_source.contains(name)) {
       continue;
     }
-    findings.push_back(Warning("input", fmt::format("'{}' is silent: nothing came from it in {:.0f} s", name, seen.watched_s),
+    if (const auto* autopilot = AutopilotOf(seen, name)) {
+      findings.push_back(Warning(kInputSubject,
+                                 fmt::format("'{}' is silent: no ATTITUDE, GLOBAL_POSITION_INT or GPS_RAW_INT of system {}, component {} came from "
+                                             "it in {:.0f} s",
+                                             name, autopilot->mavlink_system_id, navigator::MavlinkCutter::kAutopilotComponent, seen.watched_s),
+                                 "the autopilot's power and cable, baud or address and port; SERIALn_PROTOCOL 2 and SRn_EXTRA1, SRn_POSITION, "
+                                 "SRn_EXT_STAT of its port; mavlink_system_id"));
+      continue;
+    }
+    findings.push_back(Warning(kInputSubject, fmt::format("'{}' is silent: nothing came from it in {:.0f} s", name, seen.watched_s),
                                "its power, cable, baud, address and port; an AIS receiver says nothing where no ship is near"));
   }
   return findings;
@@ -171,11 +218,12 @@ Findings CheckNavigation(const Observations& seen) {
   }
   Findings findings;
   for (const auto& [name, fault] : seen.navigation.input_faults) {
-    findings.push_back(Fault("input", fmt::format("'{}': {}", name, fault), "its entry in navigator.txtpb; its cable"));
+    findings.push_back(Fault(kInputSubject, fmt::format("'{}': {}", name, fault), "its entry in navigator.txtpb; its cable"));
   }
   findings.push_back(CheckFix(seen));
   if (seen.navigation.num_by_source.empty()) return findings;
   for (auto& silent : CheckSilence(seen)) findings.push_back(std::move(silent));
+  for (auto& lack : CheckAutopilots(seen)) findings.push_back(std::move(lack));
   if (auto datum = CheckDatum(seen)) findings.push_back(std::move(*datum));
   findings.push_back(CheckHeading(seen));
   if (seen.navigation.pose) findings.push_back(CheckAttitude(*seen.navigation.pose));

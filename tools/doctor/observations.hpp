@@ -110,15 +110,23 @@ struct LidarSeen {
   std::array<AzimuthSeen, 360> azimuths{};  // by whole degree, of all scans
 };
 
+/// What one input of the navigator told.
+struct InputSeen {
+  std::int64_t num_places = 0;  // measured or not
+  std::int64_t num_fixes = 0;   // measured
+  std::int64_t num_attitudes = 0;
+};
+
 struct NavigationSeen {
   Via via = Via::kNothing;
   std::vector<std::pair<std::string, std::string>> input_faults;  // name, reason
   std::string complaint;                                          // as in LidarSeen
   std::map<std::string, std::int64_t> num_by_source;              // sentences and IMU samples
-  std::optional<gnss_fix_t> fix;                                  // the last; of one epoch the one that says most
-  Utime fix_heard{};                                              // by this computer's clock
-  std::optional<attitude_t> heading;                              // the last that holds one
-  std::optional<pose_t> pose;                                     // the last
+  std::map<std::string, InputSeen> told_by_source;
+  std::optional<gnss_fix_t> fix;      // the last; of one epoch the one that says most
+  Utime fix_heard{};                  // by this computer's clock
+  std::optional<attitude_t> heading;  // the last that holds one
+  std::optional<pose_t> pose;         // the last
 };
 
 /// One process, told apart by computer and process id.

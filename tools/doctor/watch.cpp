@@ -251,6 +251,7 @@ void Notes::ListenTo(bus::Bus& bus, Via via) {
   });
   bus::Subscribe<gnss_fix_t>(bus, bus::kGnssFix, [this](const gnss_fix_t& message) { OnFix(message); });
   bus::Subscribe<attitude_t>(bus, bus::kAttitude, [this](const attitude_t& message) {
+    ++seen_.navigation.told_by_source[message.source].num_attitudes;
     if (std::isfinite(message.heading_rad)) seen_.navigation.heading = message;
   });
   bus::Subscribe<pose_t>(bus, bus::kPose, [this](const pose_t& message) { seen_.navigation.pose = message; });
@@ -348,6 +349,9 @@ void Notes::LookAtZone(std::span<const lidar_scan_t> parts) {
 
 // A receiver tells one epoch in several sentences, maybe to several inputs, and not each tells how many satellites there are.
 void Notes::OnFix(const gnss_fix_t& message) {
+  auto& told = seen_.navigation.told_by_source[message.source];
+  told.num_places += std::isfinite(message.latitude_deg) ? 1 : 0;
+  told.num_fixes += message.quality != gnss_fix_t::QUALITY_NONE ? 1 : 0;
   auto& fix = seen_.navigation.fix;
   const bool says_less = fix && fix->num_satellites >= 0 && message.num_satellites < 0;
   constexpr std::int64_t kEpochUs = 1'500'000;  // of the slowest receivers, a fix a second, and some delay

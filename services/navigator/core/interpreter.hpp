@@ -29,10 +29,15 @@ enum class Role {
   kNothing,   // recorded only
 };
 
+/// How a source speaks. The numbers of config.
+enum class Protocol { kNmea0183 = 1, kMavlink };
+
 /// The settings of one source of sentences, as far as they concern its sentences.
 struct SourceParams {
   std::string name;  // as in NAV_RAW
   Role role = Role::kAll;
+  Protocol protocol = Protocol::kNmea0183;
+  int mavlink_system_id = 1;  // of the autopilot
   bool requires_checksum = true;
   // From the instant of a measurement to the arrival of its sentence, where the sentence has no time of its own; nullopt: not known, 0 counts, and
   // the source does not correct the computer's clock below max_sentence_latency.
@@ -88,7 +93,7 @@ class Interpreter {
   };
   struct Accuracy {
     Utime arrival;
-    Sentence gst;
+    Sentence said;
   };
   struct Source {
     SourceParams params;
@@ -103,8 +108,11 @@ class Interpreter {
     std::optional<Accuracy> accuracy;
     TimeZoneCheck time_zone;
     StandingUtc standing_utc;
-    std::optional<Utime> null_fix;  // arrival of the last sentence at 0 N 0 E
-    double declination_rad = kNan;  // out of RMC
+    std::optional<Utime> null_fix;                  // arrival of the last sentence at 0 N 0 E
+    double declination_rad = kNan;                  // out of RMC
+    std::optional<Accuracy> autopilot_gps;          // its receiver's last fix, measured or not
+    std::optional<std::uint32_t> attitude_boot_ms;  // time_boot_ms of the last of each kind
+    std::optional<std::uint32_t> position_boot_ms;
     std::array<Arrivals, kNumSentenceTypes> arrivals;
     bool is_in_time = true;  // of the sentence that is read
     // The last timed sentence by which one of a queue got its lateness; by type.
@@ -113,6 +121,7 @@ class Interpreter {
 
   Source& SourceOf(const std::string& name);
   bool IsRepeated(const Item& item);
+  ParseResult Parse(const Item& item, const Source& source);
 
   void ReadDate(const Item& item, Source& source, const Sentence& zda);
   Reading ReadUnderstood(const Item& item, Source& source, const Sentence& sentence);
@@ -120,6 +129,9 @@ class Interpreter {
   Reading ReadVelocity(const Item& item, Source& source, const Sentence& sentence);
   Reading ReadTurnRate(const Item& item, Source& source, const Sentence& sentence);
   Reading ReadAttitude(const Item& item, Source& source, const Sentence& sentence);
+  Reading ReadAutopilotAttitude(const Item& item, Source& source, const Sentence& sentence);
+  Reading ReadAutopilotPosition(const Item& item, Source& source, const Sentence& sentence);
+  const Sentence* AutopilotGps(const Item& item, const Source& source) const;
 
   std::optional<MeasurementTime> When(const Item& item, Source& source, const Sentence& sentence, bool is_measured = true);
   std::optional<MeasurementTime> WhenArrived(const Item& item, Source& source, SentenceType type);
@@ -132,11 +144,11 @@ class Interpreter {
   std::string last_lidar_sentence_;
   std::optional<std::chrono::microseconds> time_scale_;  // that of the last fix: POSE less UTC
 
-  static constexpr auto kCountNames =
-      std::to_array<std::string_view>({"understood_sentence",  "other_sentence", "repeated_sentence", "outside_role",    "no_checksum",
-                                       "bad_checksum",         "bad_field",      "implausible_value", "null_fix",        "sentence_time_unusable",
-                                       "time_backwards",       "local_time",     "standing_utc",      "queued_sentence", "date_unusable",
-                                       "stale_lidar_sentence", "no_deviation",   "no_declination",    "empty_attitude",  "xdr_not_used"});
+  static constexpr auto kCountNames = std::to_array<std::string_view>(
+      {"understood_sentence", "other_sentence",    "repeated_sentence",  "outside_role",           "no_checksum",       "bad_checksum",
+       "bad_field",           "implausible_value", "null_fix",           "sentence_time_unusable", "time_backwards",    "local_time",
+       "standing_utc",        "queued_sentence",   "date_unusable",      "stale_lidar_sentence",   "no_deviation",      "no_declination",
+       "empty_attitude",      "xdr_not_used",      "unexpected_mavlink", "repeated_mavlink",       "unmeasured_mavlink"});
   Counts<kCountNames> counts_;
 };
 

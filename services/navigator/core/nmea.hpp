@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -89,8 +90,12 @@ enum class SentenceType {
   kVnIns,
   kVnYmr,
   kVnImu,
+  // Messages of an autopilot (mavlink_messages.hpp).
+  kMavAttitude,
+  kMavPosition,
+  kMavGps,  // its receiver's fix: quality and accuracies without a place
 };
-inline constexpr std::size_t kNumSentenceTypes = static_cast<std::size_t>(SentenceType::kVnImu) + 1;
+inline constexpr std::size_t kNumSentenceTypes = static_cast<std::size_t>(SentenceType::kMavGps) + 1;
 
 /// Which sentence says what, in which field, and by which source: at its reader in nmea.cpp.
 struct Sentence : FixValues, AttitudeValues {
@@ -102,6 +107,7 @@ struct Sentence : FixValues, AttitudeValues {
   double declination_rad = kNan;                         // positive east
   double turn_rate_radps = kNan;                         // positive when the bow turns to starboard
   std::optional<StrapdownSample> imu;
+  std::optional<std::uint32_t> time_boot_ms;  // of an autopilot: since it was switched on
 };
 
 struct ParseResult {

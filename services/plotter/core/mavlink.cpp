@@ -1,10 +1,11 @@
 #include "services/plotter/core/mavlink.hpp"
 
 #include <algorithm>
-#include <span>
+#include <array>
 #include <utility>
 
 #include "common/core/append_bytes.hpp"
+#include "common/core/mavlink.hpp"
 
 namespace lookout::plotter {
 
@@ -19,62 +20,26 @@ constexpr std::uint8_t kFrameBodyFrd = 12;  // MAV_FRAME
 constexpr std::uint16_t kUnknownObstacle = 0xFFFF;
 constexpr std::size_t kTextBytes = 50;
 
-// CRC-16/MCRF4XX.
-std::uint16_t Crc(std::string_view bytes, std::uint8_t extra) {
-  std::uint16_t crc = 0xFFFF;
-  const auto add = [&crc](std::uint8_t byte) {
-    auto mixed = static_cast<std::uint8_t>(byte ^ (crc & 0xFF));
-    mixed = static_cast<std::uint8_t>(mixed ^ (mixed << 4));
-    crc = static_cast<std::uint16_t>((crc >> 8) ^ (mixed << 8) ^ (mixed << 3) ^ (mixed >> 4));
-  };
-  for (const char byte : bytes) add(static_cast<std::uint8_t>(byte));
-  add(extra);
-  return crc;
-}
-
-std::uint8_t ByteAt(std::string_view bytes, std::size_t index) { return static_cast<std::uint8_t>(bytes[index]); }
-
-// The head of a frame: its size, and where the number of the message stands.
-struct Head {
-  std::size_t num_bytes;
-  std::size_t id_at;
-};
-constexpr Head kHead1{6, 5};
-constexpr Head kHead2{10, 7};
-
 }  // namespace
 
 int MavlinkReader::CountHeartbeats(std::string_view bytes) {
-  constexpr std::uint8_t kMagic1 = 0xFE;
-  constexpr std::size_t kPayloadBytes = 9;
+  static constexpr std::array kKinds{MavlinkKind{.id = 0, .crc_extra = 50, .num_bytes = 9, .max_payload_bytes = 9}};
   constexpr std::size_t kAutopilotAt = 5;
-  constexpr std::uint8_t kCrcExtra = 50;
   rest_ += bytes;
   const std::string_view all = rest_;
   int num_heartbeats = 0;
   std::size_t at = 0;
   while (at < all.size()) {
-    const auto frame = all.substr(at);
-    const bool is_second = ByteAt(frame, 0) == kMagic;
-    if (!is_second && ByteAt(frame, 0) != kMagic1) {
-      ++at;
-      continue;
-    }
-    const Head head = is_second ? kHead2 : kHead1;
-    if (frame.size() < head.num_bytes) break;
-    const std::size_t num_payload = ByteAt(frame, 1);
-    const bool is_heartbeat = num_payload > 0 && (is_second ? num_payload <= kPayloadBytes : num_payload == kPayloadBytes) &&
-                              frame.substr(head.id_at, head.num_bytes - head.id_at).find_first_not_of('\0') == std::string_view::npos;
-    const std::size_t end = head.num_bytes + num_payload;
-    if (is_heartbeat && frame.size() < end + 2) break;
-    if (!is_heartbeat || Crc(frame.substr(1, end - 1), kCrcExtra) != (ByteAt(frame, end) | ByteAt(frame, end + 1) << 8)) {
+    const auto [verdict, frame] = LookForMavlink(all.substr(at), kKinds);
+    if (verdict == MavlinkLook::Verdict::kUnfinished) break;
+    if (verdict != MavlinkLook::Verdict::kFrame) {
       ++at;
       continue;
     }
     // Zeros at the end of the payload are not sent.
-    const auto autopilot = num_payload > kAutopilotAt ? ByteAt(frame, head.num_bytes + kAutopilotAt) : 0;
+    const auto autopilot = frame.payload.size() > kAutopilotAt ? static_cast<std::uint8_t>(frame.payload[kAutopilotAt]) : 0;
     if (autopilot != kAutopilotInvalid) ++num_heartbeats;
-    at += end + 2;
+    at += frame.bytes.size();
   }
   rest_.erase(0, at);
   return num_heartbeats;
@@ -93,7 +58,7 @@ std::string MavlinkWriter::Frame(Message message, std::string payload) {
   AppendLittleEndian(component_id_, 1, frame);
   AppendLittleEndian(message.id, 3, frame);
   frame += payload;
-  AppendLittleEndian(Crc(std::string_view(frame).substr(1), message.crc_extra), 2, frame);
+  AppendLittleEndian(MavlinkCrc(std::string_view(frame).substr(1), message.crc_extra), 2, frame);
   return frame;
 }
 

@@ -78,7 +78,7 @@ class MavlinkReader {
   int CountHeartbeats(std::string_view bytes);
 
  private:
-  std::string rest_;  // the beginning of a heartbeat: 20 bytes at most
+  std::string rest_;  // the beginning of a heartbeat: 33 bytes at most
 };
 
 }  // namespace lookout::plotter

@@ -241,6 +241,32 @@ TEST(DoctorNavigation, NamesAnInputThatIsSilent) {
   EXPECT_SAYS(About(CheckNavigation(seen), "input"), kOk, "");
 }
 
+TEST(DoctorNavigation, NamesAnAutopilotThatIsSilentOrGivesHalf) {
+  auto seen = Healthy();
+  auto& navigation = *seen.config.navigation;
+  navigation.connections.push_back({.name = "pilot", .kind = navigator::Connection::Kind::kSerial, .address = "", .file = "/dev/ttyUSB1"});
+  auto& pilot = navigation.navigator.sources.emplace_back();
+  pilot.name = "pilot";
+  pilot.protocol = navigator::Protocol::kMavlink;
+  pilot.mavlink_system_id = 7;
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kWarning, "'pilot' is silent: no ATTITUDE, GLOBAL_POSITION_INT or GPS_RAW_INT of system 7");
+  seen.navigation.num_by_source["pilot"] = 100;
+  auto& told = seen.navigation.told_by_source["pilot"];
+  told.num_attitudes = 50;
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kWarning, "'pilot' gives no position: no GLOBAL_POSITION_INT comes");
+  told.num_places = 20;
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kWarning, "'pilot' gives positions without a fix: no GPS_RAW_INT");
+  told.num_fixes = 20;
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kOk, "");
+  told.num_attitudes = 0;
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kWarning, "'pilot' gives no heading: no ATTITUDE comes");
+  pilot.role = navigator::Role::kGnss;
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kOk, "");
+  told = {.num_attitudes = 50};
+  pilot.role = navigator::Role::kAttitude;
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kOk, "");
+}
+
 // On a busy computer the first HEALTH came later than the doctor waits for it, and it told of a taken port whose process sent on the same bus.
 TEST(DoctorLidar, APortThatAProcessHoldsIsNoFaultThoughItsHealthCameLate) {
   auto seen = Healthy();

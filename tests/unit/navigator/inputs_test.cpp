@@ -96,6 +96,44 @@ TEST_F(InputsTest, AreRefusedWithLineAndReason) {
   ExpectFault("source: LIVE use_lidar_nmea: false", ":1: source: is LIVE, but there is nothing to read");
 }
 
+TEST_F(InputsTest, MayBeAnAutopilot) {
+  const auto params = Load(kLive + R"(
+    input { name: 'pilot' protocol: MAVLINK serial { device: '/dev/ttyUSB0' baud: 115200 } mavlink_system_id: 7 latency_s: 0.03 }
+    input { name: 'other' protocol: MAVLINK role: ATTITUDE udp { bind_address: '0.0.0.0' port: 14551 } }
+    input { name: 'gnss' udp { bind_address: '0.0.0.0' port: 2000 } })");
+  const auto& sources = params.navigator.sources;
+  ASSERT_EQ(sources.size(), 3U);
+  EXPECT_EQ(sources[0].protocol, Protocol::kMavlink);
+  EXPECT_EQ(sources[0].mavlink_system_id, 7);
+  EXPECT_EQ(sources[1].mavlink_system_id, 1);
+  EXPECT_EQ(sources[2].protocol, Protocol::kNmea0183);
+  const auto words = InWords(params);
+  EXPECT_NE(words.find("# input 'pilot': serial port /dev/ttyUSB0, 115200 baud, 8N1; MAVLink of system 7, component 1; all that its sentences say is "
+                       "used.\n#   positions are those of the autopilot's own origin"),
+            std::string::npos)
+      << words;
+  EXPECT_NE(words.find("# input 'other': UDP on 0.0.0.0 port 14551; MAVLink of system 1, component 1; headings, roll, pitch and rates of turn are "
+                       "used.\n#   pitch: bow up"),
+            std::string::npos)
+      << words;
+}
+
+TEST_F(InputsTest, OfAnAutopilotAreRefusedWhereTheyCannotMeanThat) {
+  const std::string udp = "udp { bind_address: '::' port: 14551 } ";
+  const auto of_pilot = [](const std::string& rest) { return kLive + "input { name: 'a' protocol: MAVLINK " + rest + " }"; };
+  ExpectFault(of_pilot("gpsd {}"), ":2: input: 'a': protocol MAVLINK needs serial or udp of this input's own");
+  ExpectFault(kLive + "bind_address: '0.0.0.0'\ninput { name: 'udp' protocol: MAVLINK }", "needs serial or udp of this input's own");
+  ExpectFault(of_pilot(udp + "role: IMU"), "role IMU: no IMU samples are read from MAVLINK");
+  ExpectFault(of_pilot(udp + "checksum_required: false"), "checksum_required must not be false with MAVLINK");
+  ExpectFault(of_pilot(udp + "roll_positive: PORT_DOWN"), "roll_positive and pitch_positive are fixed by MAVLINK");
+  ExpectFault(of_pilot(udp + "deviation_deg: 0"), "deviation_deg and declination_deg are not for MAVLINK");
+  ExpectFault(of_pilot(udp + "mavlink_system_id: 0"), "mavlink_system_id: must be at least 1");
+  ExpectFault(of_pilot(udp + "mavlink_system_id: 256"), "mavlink_system_id: must be at most 255");
+  ExpectFault(kLive + "input { name: 'a' mavlink_system_id: 2 " + udp + "}", "mavlink_system_id is for protocol MAVLINK");
+  ExpectFault(kLive + "input { name: 'b' " + udp + "}\ninput { name: 'a' protocol: MAVLINK " + udp + "}",
+              ":3: input: 'a': udp port 14551 belongs to");
+}
+
 const std::string kPlayed = "source: LIVE use_lidar_nmea: false\n";
 
 TEST_F(InputsTest, MayBeTextLogsAlone) {

@@ -241,8 +241,8 @@ std::map<std::string, int> Census(const fs::path& file) {
   census["not printable"] = static_cast<int>(lines.num_not_printable);
   for (const auto& line : lines.lines) {
     static const char* const kFaults[] = {"", "no checksum", "bad checksum", "bad field", "implausible"};
-    static const char* const kTypes[] = {"other", "RMC", "GGA", "GNS", "XDR", "TNTHTM", "VTG",   "HDT",   "PASHR",
-                                         "GST",   "GLL", "ZDA", "HDG", "ROT", "HPR",    "VNINS", "VNYMR", "VNIMU"};
+    static const char* const kTypes[] = {"other", "RMC", "GGA", "GNS", "XDR",   "TNTHTM", "VTG",   "HDT",      "PASHR",    "GST", "GLL",
+                                         "ZDA",   "HDG", "ROT", "HPR", "VNINS", "VNYMR",  "VNIMU", "ATTITUDE", "POSITION", "GPS"};
     static_assert(std::size(kTypes) == kNumSentenceTypes);
     const auto result = ParseSentence(line);
     ++census[result.fault == SentenceFault::kNone ? kTypes[static_cast<std::size_t>(result.sentence.type)] : kFaults[static_cast<int>(result.fault)]];
