@@ -102,8 +102,6 @@ class Body {
   struct Measured;
   Measured Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const;
   Measured MeasuredBy(Measured measured, const Reaches& known) const;
-  struct Displacements;
-  Displacements DisplacementsOf(const Measured& measured, const Reaches& known) const;
   Shift ShiftOf(const Measured& measured, const Reaches& known, const Eigen::Matrix2d& noise_m2, double range_m) const;
   // The other part that is seen; nullopt: the one that was seen last.
   std::optional<std::size_t> PartOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const;

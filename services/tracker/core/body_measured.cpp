@@ -29,9 +29,6 @@ constexpr double kFarSdPerWidth = 0.5;
 // A measurement that is shorter than the known outline is a part: by so many deviations, and by a share of the size.
 constexpr double kPartSds = 2.0;
 constexpr double kPartShare = 0.15;
-// Variance of what lies between two places, by the square of the room: the most that it can be. Parts are rather at the ends, as the stern of a boat
-// whose bow is low, than evenly spread (1/12).
-constexpr double kBetweenVariance = 1.0 / 4.0;
 
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -138,51 +135,48 @@ std::optional<std::size_t> Body::PartOf(const Measured& measured, const Eigen::M
   return best;
 }
 
-// Each edge says how far the thing is from its position. Where both ends of a direction do, and differ, the thing lies between: a part lies somewhere
-// in what is known, and what was known lies somewhere in what is longer than that.
-Body::Displacements Body::DisplacementsOf(const Measured& measured, const Reaches& known) const {
+Body::Shift Body::ShiftOf(const Measured& measured, const Reaches& known, const Eigen::Matrix2d& noise_m2, double range_m) const {
   const auto directions = SideDirections();
   const Eigen::Vector2d position = position_m();
-  const bool is_part = measured.short_m > 0.0;
-  Displacements told;
-  for (std::size_t i = 0; i < kDirections / 2; ++i) {
-    const std::size_t j = Opposite(i);
-    const double at_m = directions[i].dot(position);
-    const double off_m = measured.reach_m[i] - at_m - known[i].reach_m;
-    const double opposite_off_m = known[j].reach_m - measured.reach_m[j] - at_m;
-    const double room_m = opposite_off_m - off_m;  // below 0 where more is seen than is known
-    const bool has_end = measured.kind[i] == Measured::Kind::kEdge;
-    const bool has_opposite_end = measured.kind[j] == Measured::Kind::kEdge;
-    // A part that is longer than the thing is none: its ends speak against each other.
-    const bool lies_between = is_part ? room_m > 0.0 : has_end && has_opposite_end;
-    const double num_ends = static_cast<double>(has_end) + static_cast<double>(has_opposite_end);
-    const double between_m2 = lies_between ? num_ends * kBetweenVariance * room_m * room_m : 0.0;
-    if (has_end) told.Add({directions[i], off_m, measured.variance_m2[i] + known[i].variance_m2 + between_m2});
-    if (has_opposite_end) told.Add({directions[i], opposite_off_m, measured.variance_m2[j] + known[j].variance_m2 + between_m2});
-  }
-  return told;
-}
-
-Body::Shift Body::ShiftOf(const Measured& measured, const Reaches& known, const Eigen::Matrix2d& noise_m2, double range_m) const {
-  const bool is_part = measured.short_m > 0.0;
-  const Displacements told = DisplacementsOf(measured, known);
   constexpr double kNothing = 1e-6;  // 1/m2, where no side is an edge
   Eigen::Matrix2d information = kNothing * Eigen::Matrix2d::Identity();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const auto& one : told.all()) {
-    information += one.direction * one.direction.transpose() / one.variance_m2;
-    sum += one.off_m / one.variance_m2 * one.direction;
+  int num_edges = 0;
+  if (measured.short_m > 0.0) {
+    // A part lies somewhere in the outline: where it is seen is a guess.
+    constexpr double kTimes = 2.0;
+    const double weight = 1.0 / (kTimes * 0.25 * measured.short_m * measured.short_m);
+    information = weight * Eigen::Matrix2d::Identity();
+    Eigen::Vector2d off = Eigen::Vector2d::Zero();
+    int num_pairs = 0;
+    for (std::size_t i = 0; i < kDirections; ++i) {
+      const std::size_t j = Opposite(i);
+      if (measured.kind[i] != Measured::Kind::kEdge || measured.kind[j] != Measured::Kind::kEdge) continue;
+      const double off_m = 0.5 * ((measured.reach_m[i] - known[i].reach_m) - (measured.reach_m[j] - known[j].reach_m)) - directions[i].dot(position);
+      off += off_m * directions[i];
+      ++num_pairs;
+    }
+    sum = weight / num_pairs * off;
+  }
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - known[i].reach_m;
+    if (!measured.Tells(i, beyond_m)) continue;
+    const double weight = 1.0 / (measured.variance_m2[i] + known[i].variance_m2);
+    information += weight * directions[i] * directions[i].transpose();
+    sum += weight * beyond_m * directions[i];
+    ++num_edges;
   }
   // The edges are of a few returns: as many directions are worth two.
   const Eigen::Matrix2d covariance = information.inverse();
-  const double times = std::max(1.0, 0.5 * static_cast<double>(told.num));
+  const double times = std::max(1.0, 0.5 * num_edges);
   Shift shift{covariance * sum, covariance * times + Eigen::Matrix2d::Identity() * jitter_m2_ + NoiseOf(noise_m2, range_m), 0.0, 0.0};
-  for (const auto& one : told.all()) {
-    const double left_m = one.off_m - one.direction.dot(shift.shift_m);
-    shift.misfit += left_m * left_m / (one.variance_m2 + jitter_m2_) / static_cast<double>(told.num);
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - known[i].reach_m;
+    if (!measured.Tells(i, beyond_m)) continue;
+    const double left = beyond_m - directions[i].dot(shift.shift_m);
+    shift.misfit += left * left / (measured.variance_m2[i] + known[i].variance_m2 + jitter_m2_) / num_edges;
   }
-  shift.is_part = is_part;
-  const Eigen::Vector2d position = position_m();
+  shift.is_part = measured.short_m > 0.0;
   const auto off_by = [](const Eigen::Vector2d& off, const Eigen::Matrix2d& spread) { return off.dot(spread.inverse() * off); };
   const Eigen::Matrix2d spread_moving = shift.covariance_m2 + moving_covariance_.topLeftCorner<2, 2>();
   shift.off = off_by(position + shift.shift_m - moving_.head<2>(), spread_moving);

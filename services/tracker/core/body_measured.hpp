@@ -3,8 +3,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstddef>
-#include <span>
 
 #include "services/tracker/core/body.hpp"
 
@@ -18,20 +16,9 @@ struct Body::Measured {
   Eigen::Vector2d sight = Eigen::Vector2d::Zero();
   // A smaller part is seen than is known, from end to end, by so much; 0: all of it is.
   double short_m = 0.0;
-};
 
-// What a measurement says of how far the thing is from its position, direction by direction.
-struct Body::Displacements {
-  struct One {
-    Eigen::Vector2d direction = Eigen::Vector2d::Zero();
-    double off_m = 0.0;  // along it
-    double variance_m2 = 0.0;
-  };
-  std::array<One, kDirections> ones{};
-  std::size_t num = 0;
-
-  void Add(const One& one) { ones[num++] = one; }
-  std::span<const One> all() const { return std::span(ones).first(num); }
+  // Whether the measurement says where a side lies. A part lies in the outline: it says so only where it reaches beyond.
+  bool Tells(std::size_t i, double beyond_m) const { return short_m > 0.0 ? beyond_m > 0.0 : kind[i] == Kind::kEdge; }
 };
 
 // An outline that is seen for the first time.

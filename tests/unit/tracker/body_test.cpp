@@ -343,26 +343,6 @@ TEST(Body, CovarianceIsHonest) {
   EXPECT_LT(velocity_sum / num_moving, 1.5);
 }
 
-// A boat at 5 m/s is seen whole, not at all for a second, then its stern for some scans, then whole again. The stern lies in it somewhere: it may be
-// the middle, and it is not the least way that the boat can have gone.
-TEST(Body, OfWhichAPartIsSeenElsewhereKeepsItsSpeed) {
-  const double speed_mps = 5.0;
-  for (const double north_m : {60.0, -60.0}) {
-    Box boat{.middle_m = {-5.0, north_m}, .length_m = 5.0};
-    const auto see = [](Body& body, const Box& box) { body.Update(box.SeenFrom({0.0, 0.0}), {}, kNoise, 60.0, true); };
-    Body body(boat.SeenFrom({0.0, 0.0}), {}, kNoise, 60.0);
-    for (int scan = 1; scan < 25; ++scan) {
-      boat.middle_m.x() += speed_mps * kScanS;
-      body.Predict(kScanS);
-      if (scan == 14 || scan == 15) see(body, {.middle_m = boat.middle_m - Eigen::Vector2d(1.8, 0.0), .length_m = 1.4});
-      if (scan < 5 || scan > 15) see(body, boat);
-    }
-    EXPECT_TRUE(body.IsMoving(kMoving));
-    EXPECT_NEAR(body.velocity_mps().x(), speed_mps, 0.5);
-    EXPECT_LT((body.center_m() - boat.middle_m).norm(), 0.5);
-  }
-}
-
 // A part of what is known, in each scan the same: nothing is known of where in the thing it lies, and the thing does not move.
 TEST(Body, OfWhichAPartIsSeenInPlaceStands) {
   std::mt19937_64 random(11);
