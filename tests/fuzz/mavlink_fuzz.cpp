@@ -2,7 +2,6 @@
 // crash, no hang, no more held than one frame for each sender, each line one that NAV_RAW takes and that holds its frame again.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -12,6 +11,7 @@
 #include "services/navigator/core/item_sequencer.hpp"
 #include "services/navigator/core/mavlink_lines.hpp"
 #include "services/navigator/core/navigator.hpp"
+#include "tests/fuzz/pose_check.hpp"
 #include "tests/unit/navigator/filter_params.hpp"
 
 namespace {
@@ -33,12 +33,7 @@ NavigatorParams FuzzParams() {
 
 void Check(const NavigatorOutput& output) {
   if (output.fix && output.fix->quality != FixQuality::kNone && !(output.fix->horizontal_sd_m > 0.0)) std::abort();
-  for (const auto& pose : output.poses) {
-    const bool is_on_earth = pose.status == PoseStatus::kOk || pose.status == PoseStatus::kCoasting || pose.status == PoseStatus::kNoHeading;
-    if (is_on_earth && !(std::isfinite(pose.latitude_deg) && pose.p_map_m.allFinite() && pose.covariance(0, 0) >= 0.0)) std::abort();
-    if (std::isinf(pose.p_map_m.sum()) || std::isinf(pose.velocity_map_mps.sum())) std::abort();
-    if (pose.heading_source != HeadingSource::kNone && !std::isfinite(pose.heading_rad)) std::abort();
-  }
+  CheckPoses(output.poses);
 }
 
 // The bytes in pieces of the size that the first of them says, as messages of a right checksum.

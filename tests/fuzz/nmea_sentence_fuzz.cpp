@@ -2,7 +2,6 @@
 // The same bytes cut into datagrams of two senders, and as rows of CSV.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -13,6 +12,7 @@
 #include "services/navigator/core/item_sequencer.hpp"
 #include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/navigator.hpp"
+#include "tests/fuzz/pose_check.hpp"
 #include "tests/unit/navigator/filter_params.hpp"
 
 namespace {
@@ -34,14 +34,6 @@ NavigatorParams FuzzParams() {
   params.filter = TestFilterParams();
   params.filter.p_vessel_antenna_m = {-0.8, 0.4, 0.9};
   return params;
-}
-
-void Check(const NavigatorOutput& output) {
-  for (const auto& pose : output.poses) {
-    const bool has_position = pose.status != PoseStatus::kNoPosition && pose.status != PoseStatus::kUnknown;
-    if (std::isfinite(pose.latitude_deg) != has_position || std::isinf(pose.p_map_m.sum())) std::abort();
-    if (std::isfinite(pose.heading_rad) != (pose.heading_source != HeadingSource::kNone)) std::abort();
-  }
 }
 
 void CheckLines(const DatagramLines& lines) {
@@ -87,7 +79,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Navigator navigator(FuzzParams());
   lookout::Utime time = std::chrono::sys_days(std::chrono::year(2026) / 6 / 1) + 12h;
   const auto consume = [&](const std::vector<Item>& items) {
-    for (const auto& item : items) Check(navigator.Consume(item));
+    for (const auto& item : items) CheckPoses(navigator.Consume(item).poses);
   };
   for (const auto& line : lines.lines) {
     if (!IsLine(line)) std::abort();

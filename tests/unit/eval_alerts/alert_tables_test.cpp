@@ -89,9 +89,10 @@ TEST(AlertTables, AnEventIsARowOfTheList) {
   event.told_speed_mps = 1.25;
   event.existence_probability = 0.875;
   event.text = "boat 17 in the guard zone: 9.5 m, 10 deg to port";
-  EXPECT_EQ(AlertEventRow("marina", 101, event),
-            "marina,101,12.3,far,warning,zone,3,17,boat_1,boat,14.00,inf,9.50,350,,piece moves,0.0,1.2,0.88,\"boat 17 in the guard zone: 9.5 m, 10 deg to "
-            "port\"\n");
+  EXPECT_EQ(
+      AlertEventRow("marina", 101, event),
+      "marina,101,12.3,far,warning,zone,3,17,boat_1,boat,14.00,inf,9.50,350,,piece moves,0.0,1.2,0.88,\"boat 17 in the guard zone: 9.5 m, 10 deg to "
+      "port\"\n");
   const auto header = AlertEventHeader();
   EXPECT_EQ(std::ranges::count(header, ','), 19);
 }
