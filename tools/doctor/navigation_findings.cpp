@@ -168,7 +168,8 @@ Findings CheckAutopilots(const Observations& seen) {
     const bool gives_place = role == navigator::Role::kAll || role == navigator::Role::kGnss;
     const bool gives_heading = role == navigator::Role::kAll || role == navigator::Role::kHeading || role == navigator::Role::kAttitude;
     if (gives_place && told.num_places == 0) {
-      findings.push_back(Warning(kInputSubject, fmt::format("'{}' gives no position: no GLOBAL_POSITION_INT comes from the autopilot", name),
+      findings.push_back(Warning(kInputSubject,
+                                 fmt::format("'{}' gives no position: no GLOBAL_POSITION_INT with a place comes from the autopilot", name),
                                  "SRn_POSITION 10 for its port (ArduPilot), mavlink stream (PX4); the autopilot's own alignment"));
     } else if (gives_place && told.num_fixes == 0) {
       findings.push_back(Warning(kInputSubject,

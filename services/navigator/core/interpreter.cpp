@@ -30,6 +30,7 @@ constexpr std::chrono::seconds kMaxAutopilotGpsAge(2);
 // An autopilot's place is its filter's estimate, whose errors last: it counts neither as a phase solution (RTK) nor as two antennas, by which alone
 // the filter takes errors for noise. Its time is its arrival besides: 0.2 m are 40 ms at 5 m/s. The heading's is heading_sd_deg of navigator.proto.
 constexpr double kMinAutopilotSdM = 0.2;
+constexpr double kMinAutopilotVelocitySdMps = 0.1;  // 50 ms in a turn of 20 deg/s at 5 m/s
 constexpr double kMinAutopilotHeadingSdRad = DegToRad(1.0);
 
 // By SentenceFault.
@@ -170,6 +171,14 @@ Reading Interpreter::Read(const Item& item) {
       ++counts_["outside_role"];
       return {};
     }
+  }
+  // Before arrivals are timed: what comes by a second way says nothing of them.
+  auto* const boot_ms = parsed.sentence.type == SentenceType::kMavAttitude   ? &source.attitude_boot_ms
+                        : parsed.sentence.type == SentenceType::kMavPosition ? &source.position_boot_ms
+                                                                             : nullptr;
+  if (boot_ms != nullptr && !IsNewer(*parsed.sentence.time_boot_ms, *boot_ms)) {
+    ++counts_["repeated_mavlink"];
+    return {};
   }
   source.is_in_time = source.arrivals[IndexOf(parsed.sentence.type)].Add(item.time);
   auto reading = ReadUnderstood(item, source, parsed.sentence);
@@ -389,10 +398,6 @@ const Sentence* Interpreter::AutopilotGps(const Item& item, const Source& source
 }
 
 Reading Interpreter::ReadAutopilotAttitude(const Item& item, Source& source, const Sentence& sentence) {
-  if (!IsNewer(*sentence.time_boot_ms, source.attitude_boot_ms)) {
-    ++counts_["repeated_mavlink"];
-    return {};
-  }
   const auto when = WhenArrived(item, source, sentence.type);
   if (!when) return {};
   Reading reading;
@@ -404,10 +409,6 @@ Reading Interpreter::ReadAutopilotAttitude(const Item& item, Source& source, con
 }
 
 Reading Interpreter::ReadAutopilotPosition(const Item& item, Source& source, const Sentence& sentence) {
-  if (!IsNewer(*sentence.time_boot_ms, source.position_boot_ms)) {
-    ++counts_["repeated_mavlink"];
-    return {};
-  }
   if (IsNull(*sentence.position)) {
     ++counts_["null_fix"];
     return {};
@@ -426,7 +427,7 @@ Reading Interpreter::ReadAutopilotPosition(const Item& item, Source& source, con
   fix.num_satellites = gps->num_satellites;
   fix.hdop = gps->hdop;
   fix.geoid_separation_m = gps->geoid_separation_m;
-  fix.velocity_sd_mps = gps->velocity_sd_mps;
+  fix.velocity_sd_mps = std::isnan(gps->velocity_sd_mps) ? kNan : std::max(gps->velocity_sd_mps, kMinAutopilotVelocitySdMps);
   // Where the receiver states no accuracy its fix counts as one without correction: how far the estimate follows a better one is not known.
   const double horizontal_sd_m = Or(gps->horizontal_sd_m, HorizontalSdM(FixQuality::kGnss, gps->hdop, params_.position_sd_m));
   fix.horizontal_sd_m = std::max(horizontal_sd_m, kMinAutopilotSdM);

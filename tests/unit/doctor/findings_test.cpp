@@ -253,7 +253,7 @@ TEST(DoctorNavigation, NamesAnAutopilotThatIsSilentOrGivesHalf) {
   seen.navigation.num_by_source["pilot"] = 100;
   auto& told = seen.navigation.told_by_source["pilot"];
   told.num_attitudes = 50;
-  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kWarning, "'pilot' gives no position: no GLOBAL_POSITION_INT comes");
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kWarning, "'pilot' gives no position: no GLOBAL_POSITION_INT with a place comes");
   told.num_places = 20;
   EXPECT_SAYS(About(CheckNavigation(seen), "input"), kWarning, "'pilot' gives positions without a fix: no GPS_RAW_INT");
   told.num_fixes = 20;

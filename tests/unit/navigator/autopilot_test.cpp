@@ -106,6 +106,18 @@ TEST_F(AutopilotTest, CountsWhatComesByTwoWaysOnce) {
   EXPECT_TRUE(ReadFrame(0.2, AttitudeFrame(200, 0.0F, 0.0F, 0.0F)).attitude) << "it was switched off and on";
 }
 
+// Copies made each new message look like one that had waited in a queue, for ever.
+TEST_F(AutopilotTest, HasEachPlaceThatComesByTwoWaysSlowly) {
+  int num_fixes = 0;
+  for (int i = 0; i < 40; ++i) {
+    const auto boot_ms = static_cast<std::uint32_t>(10'000 + 500 * i);
+    ReadFrame(0.5 * i, GpsFrame(3));
+    num_fixes += ReadFrame(0.5 * i, PositionFrame(boot_ms, 54.0, 10.0)).fix ? 1 : 0;
+    EXPECT_FALSE(ReadFrame(0.5 * i + 0.01, PositionFrame(boot_ms, 54.0, 10.0)).fix);
+  }
+  EXPECT_EQ(num_fixes, 40);
+}
+
 TEST_F(AutopilotTest, ThatKnowsNoPlaceHasNone) {
   ReadFrame(0.0, GpsFrame(3));
   EXPECT_FALSE(ReadFrame(0.0, PositionFrame(1000, 0.0, 0.0)).fix);
