@@ -8,7 +8,7 @@ import time
 from plotter import Receiver, Trial, check, main
 
 PLACE, SECONDS = (54.123456, 10.654321), 14
-MAX_M, UNKNOWN, NUM_SECTORS = 120, 65535, 72
+MAX_M, UNKNOWN = 120, 65535
 CONFIG = '''
 output { name: "sectors" format: MAVLINK udp { address: "127.0.0.1" port: 20021 } mavlink { max_distance_m: %d } }
 output { name: "points" format: MAVLINK udp { address: "127.0.0.1" port: 20022 } mavlink { max_distance_m: %d form: POINTS system_id: 255 component_id: 1 } }
@@ -70,13 +70,14 @@ def check_sectors(messages, truth):
         if near_border(nearest):
             continue
         num_checked += 1
+        check(100 * MAX_M + 1 in fields['distances'], 'nothing is clear')
         for sector, distance_cm in enumerate(fields['distances']):
-            # No scan comes, so that nobody looks where no track is.
+            # Beams meet nothing: all is clear but for the tracks, and unknown where the beams do not reach.
             if sector in nearest:
                 error_m = nearest[sector][0] - distance_cm / 100.0
                 check(-0.0005 <= error_m <= MOST_M, 'sector %d: %d cm, true %r' % (sector, distance_cm, nearest[sector]))
             else:
-                check(distance_cm == UNKNOWN, 'sector %d: %d cm where nothing is known' % (sector, distance_cm))
+                check(distance_cm in (100 * MAX_M + 1, UNKNOWN), 'sector %d: %d cm where nothing is' % (sector, distance_cm))
     return num_checked
 
 
