@@ -70,4 +70,21 @@ MavlinkLook LookForMavlink(std::string_view bytes, std::span<const MavlinkKind> 
            .bytes = bytes.substr(0, end)}};
 }
 
+MavlinkFound FindMavlink(std::string_view bytes, std::span<const MavlinkKind> kinds) {
+  MavlinkFound found;
+  while (found.num_used < bytes.size()) {
+    const auto [verdict, frame] = LookForMavlink(bytes.substr(found.num_used), kinds);
+    if (verdict == MavlinkLook::Verdict::kUnfinished) break;
+    if (verdict == MavlinkLook::Verdict::kFrame) {
+      found.frames.push_back(frame);
+      found.num_used += frame.bytes.size();
+      continue;
+    }
+    found.num_bad_checksum += verdict == MavlinkLook::Verdict::kBadChecksum ? 1 : 0;
+    ++found.num_skipped_bytes;
+    ++found.num_used;
+  }
+  return found;
+}
+
 }  // namespace lookout

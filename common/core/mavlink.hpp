@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace lookout {
 
@@ -41,6 +42,16 @@ std::uint16_t MavlinkCrc(std::string_view bytes, std::uint8_t crc_extra);
 
 /// Looks at the first byte and what follows it. A signature (MAVLink 2) is passed over, not checked.
 MavlinkLook LookForMavlink(std::string_view bytes, std::span<const MavlinkKind> kinds);
+
+struct MavlinkFound {
+  std::vector<MavlinkFrame> frames;    // views into the bytes
+  std::int64_t num_bad_checksum = 0;   // frames
+  std::int64_t num_skipped_bytes = 0;  // of no frame that is looked for
+  std::size_t num_used = 0;            // bytes: the rest may be the begin of a frame
+};
+
+/// All frames, wherever they stand.
+MavlinkFound FindMavlink(std::string_view bytes, std::span<const MavlinkKind> kinds);
 
 /// @return most bytes of a frame whose payload has at most `max_payload_bytes`: head, checksum and signature of MAVLink 2 with it
 constexpr std::size_t MaxMavlinkFrameBytes(std::size_t max_payload_bytes) { return 10 + max_payload_bytes + 2 + 13; }

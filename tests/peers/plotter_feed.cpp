@@ -21,10 +21,9 @@
 #include "common/bus/lcm_bus.hpp"
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/alerts_t.hpp"
-#include "lookout/lidar_scan_t.hpp"
 #include "lookout/pose_t.hpp"
-#include "lookout/segments_t.hpp"
 #include "lookout/tracks_t.hpp"
+#include "tests/support/messages.hpp"
 
 namespace lookout::peers_test {
 namespace {
@@ -270,40 +269,18 @@ class Feed {
 
   // A round of two beams that meet nothing, and its labels: somebody looks, and all is water but for the tracks.
   void SendBeams(const tracks_t& tracks) {
-    constexpr std::int32_t kColumns = 1800;
-    lidar_scan_t scan{};
-    scan.utime_us = tracks.utime_us;
-    scan.end_utime_us = tracks.end_utime_us;
-    scan.seq = scan.raw_seq = tracks.seq;
-    scan.num_parts = 1;
-    scan.time_source = lidar_scan_t::TIME_SENSOR;
-    scan.model = "VLP-16";
-    scan.range_unit_m = 0.002;
-    scan.num_rings = 2;
-    scan.elevation_rad = {-0.01F, 0.01F};
-    scan.azimuth_offset_rad = scan.origin_height_m = {0.0F, 0.0F};
-    scan.time_offset_ns = {0, 0};
-    scan.num_returns = 1;
-    scan.return_kind = {lidar_scan_t::RETURN_STRONGEST};
-    scan.num_turn_columns = scan.num_columns = kColumns;
-    for (std::int32_t i = 0; i < kColumns; ++i) {
-      scan.azimuth_rad.push_back(static_cast<float>(2.0 * kPi * i / kColumns));
-      scan.time_ns.push_back(static_cast<std::int32_t>((scan.end_utime_us - scan.utime_us) * 1000 * i / kColumns));
+    constexpr int kColumns = 1800;
+    auto scan = support::OfScan<lidar_scan_t>(tracks.utime_us, tracks.seq, tracks.end_utime_us - tracks.utime_us);
+    std::vector<float> azimuth_rad;
+    std::vector<std::int32_t> time_ns;
+    for (int i = 0; i < kColumns; ++i) {
+      azimuth_rad.push_back(static_cast<float>(2.0 * kPi * i / kColumns));
+      time_ns.push_back(static_cast<std::int32_t>((scan.end_utime_us - scan.utime_us) * 1000 * i / kColumns));
     }
-    scan.num_cells = kColumns * scan.num_rings;
-    scan.range.assign(static_cast<std::size_t>(scan.num_cells), 0);
-    scan.reflectivity.assign(static_cast<std::size_t>(scan.num_cells), 0);
+    support::FillColumns(scan, std::move(azimuth_rad), std::move(time_ns), 0);
+    scan.elevation_rad = {-0.01F, 0.01F};
+    const auto labels = support::LabelsOf(scan, 0);
     bus::Publish(bus_, bus::kLidarScan, scan);
-    segments_t labels{};
-    labels.utime_us = scan.utime_us;
-    labels.end_utime_us = scan.end_utime_us;
-    labels.seq = labels.raw_seq = scan.seq;
-    labels.num_parts = 1;
-    labels.num_rings = scan.num_rings;
-    labels.num_returns = scan.num_returns;
-    labels.num_columns = scan.num_columns;
-    labels.num_cells = scan.num_cells;
-    labels.label.assign(static_cast<std::size_t>(scan.num_cells), 0);
     bus::Publish(bus_, bus::kSegments, labels);
   }
 

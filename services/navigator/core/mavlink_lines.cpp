@@ -51,32 +51,24 @@ MavlinkLines MavlinkCutter::Add(Utime arrival, Bytes bytes, const std::string& s
     held_.erase(found);
   }
   text.append(bytes.begin(), bytes.end());
-  const std::string_view all = text;
-  std::size_t at = 0;
-  while (at < all.size()) {
-    const auto [verdict, frame] = LookForMavlink(all.substr(at), kMavlinkKinds);
-    if (verdict == MavlinkLook::Verdict::kUnfinished) break;
-    if (verdict != MavlinkLook::Verdict::kFrame) {
-      result.num_bad_checksum += verdict == MavlinkLook::Verdict::kBadChecksum ? 1 : 0;
-      ++result.num_skipped_bytes;
-      ++at;
-      continue;
-    }
+  const auto found = FindMavlink(text, kMavlinkKinds);
+  result.num_bad_checksum += found.num_bad_checksum;
+  result.num_skipped_bytes += found.num_skipped_bytes;
+  for (const auto& frame : found.frames) {
     if (frame.system_id == system_id_ && frame.component_id == kAutopilotComponent) {
       result.lines.push_back(ToMavlinkLine(frame.bytes));
     } else {
       ++result.num_other_sender;
     }
-    at += frame.bytes.size();
   }
-  if (at == all.size()) return result;
+  if (found.num_used == text.size()) return result;
   if (held_.size() >= kMaxSenders) {
     // The sender that was heard longest ago goes.
     const auto oldest = std::ranges::min_element(held_, {}, [](const auto& entry) { return entry.second.arrival; });
     result.num_skipped_bytes += static_cast<std::int64_t>(oldest->second.bytes.size());
     held_.erase(oldest);
   }
-  held_.emplace(sender, Held{text.substr(at), arrival});
+  held_.emplace(sender, Held{text.substr(found.num_used), arrival});
   return result;
 }
 

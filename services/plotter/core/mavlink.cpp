@@ -26,22 +26,14 @@ int MavlinkReader::CountHeartbeats(std::string_view bytes) {
   static constexpr std::array kKinds{MavlinkKind{.id = 0, .crc_extra = 50, .num_bytes = 9, .max_payload_bytes = 9}};
   constexpr std::size_t kAutopilotAt = 5;
   rest_ += bytes;
-  const std::string_view all = rest_;
+  const auto found = FindMavlink(rest_, kKinds);
   int num_heartbeats = 0;
-  std::size_t at = 0;
-  while (at < all.size()) {
-    const auto [verdict, frame] = LookForMavlink(all.substr(at), kKinds);
-    if (verdict == MavlinkLook::Verdict::kUnfinished) break;
-    if (verdict != MavlinkLook::Verdict::kFrame) {
-      ++at;
-      continue;
-    }
+  for (const auto& frame : found.frames) {
     // Zeros at the end of the payload are not sent.
     const auto autopilot = frame.payload.size() > kAutopilotAt ? static_cast<std::uint8_t>(frame.payload[kAutopilotAt]) : 0;
     if (autopilot != kAutopilotInvalid) ++num_heartbeats;
-    at += frame.bytes.size();
   }
-  rest_.erase(0, at);
+  rest_.erase(0, found.num_used);
   return num_heartbeats;
 }
 
