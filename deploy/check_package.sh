@@ -39,7 +39,7 @@ sed -i 's/^Version: .*/Version: 0.0.9/' "$work/old/DEBIAN/control"
 rm -f "$work/old/DEBIAN/preinst" "$work/old/DEBIAN/postinst" "$work/old/DEBIAN/postrm"
 sed -i 's#/etc/lookout/boat/lidar.txtpb#/etc/lookout/boat/vlp16.txtpb#' "$work/old/DEBIAN/conffiles"
 mv "$work/old/etc/lookout/boat/lidar.txtpb" "$work/old/etc/lookout/boat/vlp16.txtpb"
-mv "$work/old/lib/systemd/system/lookout-lidar.service" "$work/old/lib/systemd/system/lookout-vlp16.service"
+mv "$work/old/usr/lib/systemd/system/lookout-lidar.service" "$work/old/usr/lib/systemd/system/lookout-vlp16.service"
 dpkg-deb --root-owner-group -b "$work/old" "$work/old.deb" >/dev/null
 
 say "installs"

@@ -114,7 +114,7 @@ def main():
     parser = argparse.ArgumentParser(description="Trains SqueezeSeg on labelled pixels of simulated scans.")
     parser.add_argument("--set", type=pathlib.Path, required=True, help="folder that lookout-learned wrote")
     parser.add_argument("--without", default="", help="families that are not trained on, separated by commas")
-    parser.add_argument("--steps", type=int, default=400)
+    parser.add_argument("--steps", type=int, default=2000)
     parser.add_argument("--batch", type=int, default=16, help="views of a step")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--curve-every", type=int, default=50, help="steps between two points of the curve")

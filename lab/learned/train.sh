@@ -4,7 +4,7 @@
 #     --out    folder of the weights (default lab/learned/weights: those of lookout-eval)
 #     --set    folder of the scans (default build/learned/set; made where it is not there)
 #     --jobs   trainings at a time (default: as many as there are cores); each takes one core
-# All else goes to train.py. It needs python3-torch and python3-numpy of Debian, which nothing else needs: apt-get install --no-install-recommends them.
+# All else goes to train.py. It needs python3-torch and python3-numpy of Debian, which nothing else needs: installed (apt-get install --no-install-recommends), or as ./dev test slow unpacks them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 out=lab/learned/weights scans=build/learned/set jobs=$(nproc) options=()
@@ -16,8 +16,8 @@ while [ $# -gt 0 ]; do
     *) options+=("$1"); shift ;;
   esac
 done
-python=/usr/bin/python3  # Debian's, which has Debian's packages
-$python -c 'import numpy, torch' || { echo "train.sh: python3-torch is missing: apt-get install --no-install-recommends python3-torch python3-numpy" >&2; exit 1; }
+. lab/learned/find_torch.sh
+find_torch . || { echo "train.sh: python3-torch is missing: apt-get install --no-install-recommends python3-torch python3-numpy" >&2; exit 1; }
 mkdir -p "$scans" "$out"
 if [ ! -e "$scans/returns.bin" ]; then
   build/release/bin/lookout-learned --config config/catabot --scenes families --seeds 100 --seconds 0.2 --out "$scans"

@@ -2,13 +2,8 @@
 # SqueezeSeg in C++ gives the probabilities that PyTorch gives, on 100 scans and more; a training run twice gives the same weights.
 #   learned_test.sh SOURCE_FOLDER PROGRAM_FOLDER
 set -euo pipefail
-python=/usr/bin/python3  # Debian's, which has Debian's packages
-unpacked=$1/build/torch
-if ! $python -c 'import numpy, torch' 2>/dev/null; then
-  export PYTHONPATH=$unpacked/usr/lib/python3/dist-packages
-  export LD_LIBRARY_PATH=$unpacked/usr/lib/x86_64-linux-gnu:$unpacked/usr/lib/x86_64-linux-gnu/blas:$unpacked/usr/lib/x86_64-linux-gnu/lapack
-fi
-$python -c 'import numpy, torch' 2>/dev/null || { echo 'skipped: python3-torch is not installed, and ./dev test slow could not unpack it'; exit 77; }
+. "$1/lab/learned/find_torch.sh"
+find_torch "$1" || { echo 'skipped: python3-torch is not installed, and ./dev test slow could not unpack it'; exit 77; }
 work=$(mktemp -d -t learned.XXXXXX)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "FAILED: $*" >&2; exit 1; }

@@ -26,7 +26,10 @@ std::string VersionOf(const fs::path& replay) {
 
 }  // namespace
 
-fs::path OwnProgramFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+fs::path OwnProgramFolder() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).parent_path();
+}
 
 std::string DigestOfPrograms(const fs::path& folder) {
   std::string lines;
@@ -54,6 +57,7 @@ std::string KnownPrograms::DigestOf(const fs::path& folder) {
 }
 
 Programs ProgramsIn(const fs::path& folder) {
+  if (folder.empty()) throw std::invalid_argument("--programs: needed here, since the folder of this program is not known (is /proc mounted?)");
   Programs programs;
   programs.folder = fs::canonical(folder);
   for (const auto* name : kNeeded) {

@@ -18,10 +18,10 @@ struct Programs {
   bool has_eval = false;
 };
 
-/// The folder of this program.
+/// The folder of this program; empty where /proc is not mounted.
 std::filesystem::path OwnProgramFolder();
 
-/// Reads the programs. @throws std::runtime_error where one that is needed is missing
+/// Reads the programs. @throws std::invalid_argument if the folder is empty, std::runtime_error where a program that is needed is missing
 Programs ProgramsIn(const std::filesystem::path& folder);
 
 /// Over the programs of a folder that are there. @throws std::runtime_error as DigestOfFile
