@@ -1,4 +1,4 @@
-// KISS-ICP: odometry of a lidar by points alone, written from the paper.
+// KISS-ICP: odometry of a lidar by points alone, after its publication.
 //
 // Source: I. Vizzo, T. Guadagnino, B. Mersch, L. Wiesmann, J. Behley, C. Stachniss: "KISS-ICP: In Defense of Point-to-Point ICP - Simple, Accurate,
 // and Robust Registration If Done the Right Way", IEEE Robotics and Automation Letters 8 (2), 2023.
@@ -16,7 +16,7 @@
 
 namespace lookout::eval {
 
-/// Defaults of the paper; the ranges and the limit of iterations are those of the authors' program, since the paper is silent.
+/// The published defaults, as the authors' program has them.
 struct KissIcpParams {
   double min_range_m = 0.0;
   double max_range_m = 100.0;
@@ -41,7 +41,7 @@ struct LidarVelocity {
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
   Eigen::Vector3d rotation_radps = Eigen::Vector3d::Zero();  // right-handed, about the lidar's axes
 
-  /// Precondition: for_s is above 0, and the rotation is below half a turn.
+  /// Precondition: for_s is above 0, and the rotation is below pi.
   static LidarVelocity Of(const Eigen::Isometry3d& motion, double for_s);
   /// @return T_begin_end
   Eigen::Isometry3d MotionOver(double for_s) const;
@@ -95,7 +95,7 @@ class VoxelMap {
 /// @param points_m        lidar frame
 /// @param begin           T_map_lidar where the search begins
 /// @param max_distance_m  of a point from its nearest
-/// @param kernel          of Geman-McClure's function; it is added to the squared distance, as in the paper
+/// @param kernel          of Geman-McClure's function; it is added to the squared distance
 /// @return T_map_lidar
 Eigen::Isometry3d AlignPoints(const std::vector<Eigen::Vector3d>& points_m, const Eigen::Isometry3d& begin, double max_distance_m, double kernel,
                               const VoxelMap& map, const KissIcpParams& params);
