@@ -44,6 +44,7 @@ struct Options {
   std::vector<std::filesystem::path> captures;
   std::filesystem::path list_file;
   std::optional<double> berth_seconds;
+  bool has_kiss_icp = false;  // of these
   std::filesystem::path kept_folder;
   bool are_figures_long = false;
   std::size_t num_jobs = 1;
@@ -135,6 +136,9 @@ Options ParseOptions(int argc, char** argv) {
   navigation->excludes(tracks)->excludes(alerts);
   app.add_option("--keep", options.kept_folder,
                  "with --alerts: keep there what the tracker reads in simulated runs, and use it the next time; with --navigation: LIDAR_ODOMETRY");
+  app.add_flag("--kiss-icp", options.has_kiss_icp, "with --navigation: own motion alone, beside KISS-ICP on the same scans")
+      ->needs(navigation)
+      ->excludes(app.get_option("--keep"));
   app.add_flag("--long", options.are_figures_long, "with --alerts and --blocks: fill the blocks of long runs (long_alerts_...)")->needs(alerts);
   app.add_option("--jobs", options.num_jobs, "with --alerts: runs at once; the figures are the same")
       ->check(CLI::Range(1, 256))
@@ -220,6 +224,7 @@ int main(int argc, char** argv) try {
     eval::NavigationOptions navigation;
     static_cast<eval::RunOptions&>(navigation) = RunsOf(comparison);
     navigation.kept_folder = options.kept_folder;
+    navigation.has_kiss_icp = options.has_kiss_icp;
     return eval::EvaluateNavigation(navigation);
   }
   if (options.has_tracks) {

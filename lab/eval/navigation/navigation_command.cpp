@@ -59,18 +59,49 @@ struct NavigationResults {
 
 std::string Decimals(double value, int decimals) { return Number(value, decimals); }
 
+// Known %, way, drift, heading and errors of each motion; the header has the same order.
+const std::vector<std::string> kMotionHeader{"known",   "way m",   "drift, % of the way", "heading, deg a minute", "rms forward mm",
+                                             "port mm", "turn deg"};
+
+std::vector<std::string> MotionCells(const OdometryScores& scores) {
+  const auto known = static_cast<double>(scores.num_known);
+  return {Percent(known / static_cast<double>(scores.num_scans)),    Decimals(scores.way_m, 0),
+          Decimals(100.0 * scores.drift_m / scores.way_m, 2),        Decimals(60.0 * RadToDeg(scores.turned_rad) / scores.known_s, 2),
+          Decimals(1e3 * std::sqrt(scores.forward_m2 / known), 1),   Decimals(1e3 * std::sqrt(scores.port_m2 / known), 1),
+          Decimals(RadToDeg(std::sqrt(scores.turn_rad2 / known)), 3)};
+}
+
+Table::Row Joined(std::vector<std::string> first, const std::vector<std::string>& middle, const std::vector<std::string>& last) {
+  first.insert(first.end(), middle.begin(), middle.end());
+  first.insert(first.end(), last.begin(), last.end());
+  return first;
+}
+
 NamedTable OdometryTable(const NavigationResults& results) {
   NamedTable named{"own_motion", "Own motion by the lidar (LIDAR_ODOMETRY) against the truth",
-                   Table({"scene", "scans", "known", "way m", "drift, % of the way", "heading, deg a minute", "rms forward mm", "port mm", "turn deg",
-                          "NEES", "longest wrong s"})};
+                   Table(Joined({"scene", "scans"}, kMotionHeader, {"NEES", "longest wrong s"}))};
   for (const auto& scene : results.scenes) {
     const auto& scores = results.odometry.at(scene);
-    const auto known = static_cast<double>(scores.num_known);
-    named.table.Add({scene, Number(scores.num_scans), Percent(known / static_cast<double>(scores.num_scans)), Decimals(scores.way_m, 0),
-                     Decimals(100.0 * scores.drift_m / scores.way_m, 2), Decimals(60.0 * RadToDeg(scores.turned_rad) / scores.known_s, 2),
-                     Decimals(1e3 * std::sqrt(scores.forward_m2 / known), 1), Decimals(1e3 * std::sqrt(scores.port_m2 / known), 1),
-                     Decimals(RadToDeg(std::sqrt(scores.turn_rad2 / known)), 3), Decimals(scores.nees / known, 2),
-                     Decimals(scores.longest_wrong_s, 1)});
+    named.table.Add(Joined({scene, Number(scores.num_scans)}, MotionCells(scores),
+                           {Decimals(scores.nees / static_cast<double>(scores.num_known), 2), Decimals(scores.longest_wrong_s, 1)}));
+  }
+  return named;
+}
+
+// A method in a scene.
+struct MethodScores {
+  std::string scene;
+  std::string method;
+  OdometryScores scores;
+  double took_s = kNan;
+};
+
+NamedTable ComparisonTable(const std::vector<MethodScores>& results) {
+  NamedTable named{"own_motion_kiss_icp", "Own motion by the lidar against the truth, beside KISS-ICP on the same scans",
+                   Table(Joined({"scene", "scans", "method"}, kMotionHeader, {"longest wrong s", "ms a scan"}))};
+  for (const auto& [scene, method, scores, took_s] : results) {
+    named.table.Add(Joined({scene, Number(scores.num_scans), method}, MotionCells(scores),
+                           {Decimals(scores.longest_wrong_s, 1), Decimals(1e3 * took_s / static_cast<double>(scores.num_scans), 1)}));
   }
   return named;
 }
@@ -122,10 +153,49 @@ fs::path KeptFile(const NavigationOptions& options, const std::string& scene, st
   return options.kept_folder / fmt::format("{}-{}-{:.0f}.csv", scene, seed, options.plan.seconds);
 }
 
+// The motions of the scans whose motion the odometer knows; all others as unknown.
+std::vector<OdometryMessage> WhereKnown(std::vector<OdometryMessage> motions, const std::vector<OdometryMessage>& odometer) {
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (odometer.at(i).message.status != lidar_odometry_t::STATUS_OK) motions[i].message.status = lidar_odometry_t::STATUS_UNKNOWN;
+  }
+  return motions;
+}
+
+int EvaluateBesideKissIcp(const NavigationOptions& options) {
+  const auto boat = config::LoadBoat(options.config_folder);
+  std::vector<MethodScores> results;
+  runtime::Progress progress("lookout-eval", stderr);
+  const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
+  double num_done = 0.0;
+  ForEachRun(options, [&](const fs::path& file, const std::string& name, std::uint64_t seed) {
+    io::ThrowIfStopAsked();
+    progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", name, seed); });
+    if (results.empty() || results.back().scene != name) {
+      results.push_back({name, "odometer", {}, 0.0});
+      results.push_back({name, "KISS-ICP", {}, 0.0});
+      results.push_back({name, "KISS-ICP where odometer knows", {}, kNan});
+    }
+    const auto scene = sim::LoadScene(file, seed);
+    const auto motions = CompareWithKissIcp(options.config_folder, scene, seed, options.plan.seconds);
+    auto* rows = &results[results.size() - 3];
+    rows[0].scores.Add(ScoreOdometry(motions.odometer, scene, boat));
+    rows[0].took_s += motions.odometer_s;
+    rows[1].scores.Add(ScoreOdometry(motions.kiss_icp, scene, boat));
+    rows[1].took_s += motions.kiss_icp_s;
+    rows[2].scores.Add(ScoreOdometry(WhereKnown(motions.kiss_icp, motions.odometer), scene, boat));
+  });
+  const std::vector<NamedTable> tables{ComparisonTable(results)};
+  TableFiles files(options.csv_folder, tables, options.is_forced);
+  PrintTables(tables, std::cout);
+  files.Commit(tables);
+  return EXIT_SUCCESS;
+}
+
 }  // namespace
 
 int EvaluateNavigation(const NavigationOptions& options) {
   BeginRuns(options, false, "--navigation");
+  if (options.has_kiss_icp) return EvaluateBesideKissIcp(options);
   if (options.gap_begin_s + options.gap_s + PoseScores::kBehindGapS > options.plan.seconds) {
     throw std::invalid_argument(fmt::format("--seconds: the gap of {:.0f} s begins at {:.0f} s, and {:.0f} s behind it are looked at", options.gap_s,
                                             options.gap_begin_s, PoseScores::kBehindGapS));

@@ -11,6 +11,7 @@ struct NavigationOptions : RunOptions {
   double gap_begin_s = 15.0;          // of the runs with a gap
   double gap_s = 60.0;                // its length
   std::filesystem::path kept_folder;  // the motions of earlier calls; empty = none
+  bool has_kiss_icp = false;          // own motion beside KISS-ICP, without POSE; the gap and kept motions have no meaning
 };
 
 /// Simulates each scene and seed, and prints the tables to stdout, progress to stderr. @return exit code

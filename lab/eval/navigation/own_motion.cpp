@@ -6,13 +6,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
+#include "common/core/frames.hpp"
 #include "common/io/output_file.hpp"
+#include "common/messages/part_assembler.hpp"
 #include "lab/data/csv_file.hpp"
+#include "lab/eval/navigation/kiss_icp_motions.hpp"
 #include "lab/sim/simulation.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "services/odometer/wire.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout::eval {
@@ -24,20 +30,27 @@ namespace fs = std::filesystem;
 constexpr auto kHeader = "time_us,begin_us,end_us,reason,forward_m,port_m,turn_rad,cov_0,cov_1,cov_2,cov_3,cov_4,cov_5,cov_6,cov_7,cov_8\n";
 constexpr std::int64_t kMostUs = 7'258'118'400'000'000;  // the year 2200
 
-std::vector<OdometryMessage> Simulated(const fs::path& config_folder, const sim::Scene& scene, std::uint64_t seed, double seconds) {
+// Simulates the lidar, and runs lidar and odometer. @return seconds that odometer took
+double RunServices(const fs::path& config_folder, const sim::Scene& scene, std::uint64_t seed, double seconds, const replay::Chain::Sink& sink) {
   const auto boat = config::LoadBoat(config_folder);
   auto params = sim::ParamsOfConfig(config_folder);
   params.start = kSimulationStart;
   params.duration = std::chrono::microseconds(std::llround(seconds * 1e6));
   params.seed = seed;
   sim::Simulation simulation(scene, boat, params, nullptr);
-  std::vector<OdometryMessage> motions;
-  replay::Chain chain(config_folder, replay::MakeCapturePlan({.only = {"lidar", "odometer"}}),
-                      [&](Utime time, std::string_view channel, Bytes bytes) {
-                        if (channel == bus::kLidarOdometry.name) motions.push_back({time, bus::Decode<lidar_odometry_t>(bytes).value()});
-                      });
+  replay::Chain chain(config_folder, replay::MakeCapturePlan({.only = {"lidar", "odometer"}}), sink);
   while (const auto datagram = simulation.Next()) chain.OnDatagram({datagram->time, datagram->port, datagram->payload});
   chain.Finish();
+  double odometer_s = 0.0;
+  for (const auto& [service, took_s] : chain.StageTimes()) odometer_s += service == "odometer" ? took_s : 0.0;
+  return odometer_s;
+}
+
+std::vector<OdometryMessage> Simulated(const fs::path& config_folder, const sim::Scene& scene, std::uint64_t seed, double seconds) {
+  std::vector<OdometryMessage> motions;
+  RunServices(config_folder, scene, seed, seconds, [&](Utime time, std::string_view channel, Bytes bytes) {
+    if (channel == bus::kLidarOdometry.name) motions.push_back({time, bus::Decode<lidar_odometry_t>(bytes).value()});
+  });
   return motions;
 }
 
@@ -111,6 +124,31 @@ std::vector<OdometryMessage> OdometryOf(const fs::path& config_folder, const sim
   auto motions = Simulated(config_folder, scene, seed, seconds);
   if (!kept.empty()) Write(kept, motions);
   return motions;
+}
+
+ComparedMotions CompareWithKissIcp(const fs::path& config_folder, const sim::Scene& scene, std::uint64_t seed, double seconds) {
+  ComparedMotions compared;
+  const auto boat = config::LoadBoat(config_folder);
+  messages::PartAssembler<lidar_scan_t> assembler;
+  std::optional<KissIcpMotions> kiss_icp;
+  const auto on_scan = [&](Utime time, Bytes bytes) {
+    const auto parts = assembler.Add(bus::Decode<lidar_scan_t>(bytes).value()).whole;
+    if (parts.empty()) return;
+    const auto scan = odometer::ToScan(parts).value();
+    if (!kiss_icp) {
+      const auto state = sim::StateAt(scene.own_motion, boat.reference_point_above_water_m, ToSeconds(scan.end_time - kSimulationStart));
+      kiss_icp.emplace(boat, RotationMapVessel(0.5 * kPi, state.pitch_rad, state.roll_rad));
+    }
+    compared.kiss_icp.push_back({time, kiss_icp->Consume(scan)});
+  };
+  compared.odometer_s = RunServices(config_folder, scene, seed, seconds, [&](Utime time, std::string_view channel, Bytes bytes) {
+    if (channel == bus::kLidarOdometry.name) compared.odometer.push_back({time, bus::Decode<lidar_odometry_t>(bytes).value()});
+    if (channel != bus::kLidarScan.name) return;
+    const auto begin = std::chrono::steady_clock::now();
+    on_scan(time, bytes);
+    compared.kiss_icp_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  });
+  return compared;
 }
 
 void OdometryScores::Add(const OdometryScores& other) {

@@ -26,6 +26,17 @@ struct OdometryMessage {
 std::vector<OdometryMessage> OdometryOf(const std::filesystem::path& config_folder, const sim::Scene& scene, std::uint64_t seed, double seconds,
                                         const std::filesystem::path& kept);
 
+/// LIDAR_ODOMETRY and the motions of KISS-ICP on the same scans, one of each a scan, and the time of both.
+struct ComparedMotions {
+  std::vector<OdometryMessage> odometer;
+  std::vector<OdometryMessage> kiss_icp;
+  double odometer_s = 0.0;  // from the message LIDAR_SCAN to the motion, summed over the scans
+  double kiss_icp_s = 0.0;
+};
+
+/// As OdometryOf, and KISS-ICP beside the odometer. @throws config::ConfigError
+ComparedMotions CompareWithKissIcp(const std::filesystem::path& config_folder, const sim::Scene& scene, std::uint64_t seed, double seconds);
+
 /// Motions against the truth; sums, of several runs too.
 struct OdometryScores {
   std::int64_t num_scans = 0;
