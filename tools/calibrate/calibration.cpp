@@ -144,6 +144,9 @@ void Conclude(const Recording& recording, const CalibrationParams& params, const
   result.roll.is_found = result.roll.is_found && is_level_found;
   result.pitch.is_found = result.pitch.is_found && is_level_found;
   result.yaw = FoundOf(result.angles.yaw_rad, sds[2], kSystematicYawRad, DegToRad(kMaxYawSdDeg));
+  result.turned_rad = RotationVectorOf(R * params.boat.T_vessel_lidar.linear().transpose());
+  const Eigen::Vector3d systematic_rad(kSystematicTiltRad, kSystematicTiltRad, kSystematicYawRad);
+  result.turned_sd_rad = (fit.sd.head<3>().cwiseAbs2() + systematic_rad.cwiseAbs2()).cwiseSqrt();
   result.latency = FoundOf(fit.correction.latency.heading_s, fit.sd[3], kSystematicLatencyS, kMaxLatencySdS);
   result.tilt_latency = FoundOf(fit.correction.latency.tilt_s, fit.sd[4], kSystematicTiltLatencyS, kMaxLatencySdS);
   const auto after = DisagreementOf(result.motions, recording.track, p_lidar_m, result.motions_correction);
@@ -163,6 +166,7 @@ void Conclude(const Recording& recording, const CalibrationParams& params, const
     result.refusal = "the boat turned too little: what drifts cannot be told from what stands";
   } else if (!result.yaw.is_found || !result.roll.is_found || !result.pitch.is_found) {
     result.refusal = "the recording shows too little of the mounting";
+    result.is_only_weak = true;
   }
 }
 

@@ -41,6 +41,7 @@ struct Manoeuvres {
 struct Calibration {
   /// Why nothing is told, in words; empty where the result counts.
   std::string refusal;
+  bool is_only_weak = false;         // refused for nothing but deviations that are too large: each angle counts with its own
   std::vector<std::string> missing;  // motions that would help, in words
   Manoeuvres manoeuvres;
   std::string turned_in_words;  // by right angles against boat.txtpb; empty where it is not
@@ -54,6 +55,9 @@ struct Calibration {
   Found yaw;
   Found latency;  // of heading and position, s
   Found tilt_latency;
+  /// The rotation from the mounting of boat.txtpb to the one that was found, about the axes of the vessel (forward, port, up), and its deviations.
+  Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turned_sd_rad = Eigen::Vector3d::Zero();
   std::optional<double> latency_by_turning_s;
   std::optional<WaterHeight> height;
   Eigen::Vector3d boat_place_m = Eigen::Vector3d::Zero();  // of the lidar, by boat.txtpb
