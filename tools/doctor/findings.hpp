@@ -73,6 +73,9 @@ Findings CheckNavigation(const Observations& seen);
 /// The places of lidar and antenna and the direction of the lidar, so that a person on the boat sees a wrong sign.
 Findings CheckMounting(const ConfigSeen& config);
 
+/// Whether the mounting is the one of boat.txtpb, by what stands around the boat. Nothing where nobody asked.
+Findings CheckMountingSeen(const Observations& seen);
+
 /// Whether the lidar can look into all of the guard zone, by the config, and does, by the scans.
 Findings CheckGuardZone(const Observations& seen);
 

@@ -138,6 +138,7 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
   // Values for other findings. Faults of these files are told already.
   const auto look = [](const std::function<void()>& load) { config::FaultList().Try(load); };
   look([&] { seen.navigation = navigator::LoadParams(config_folder); });
+  look([&] { seen.odometer = odometer::LoadParams(config_folder); });
   look([&] { seen.tracker = tracker::LoadParams(config_folder); });
   look([&] { seen.has_plotter_outputs = !plotter::LoadParams(config_folder).outputs.empty(); });
   look([&] { seen.page = page::LoadParams(config_folder); });

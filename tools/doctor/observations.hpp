@@ -22,6 +22,7 @@
 #include "services/lidar/params.hpp"
 #include "services/lidar/survey.hpp"
 #include "services/navigator/params.hpp"
+#include "services/odometer/params.hpp"
 #include "services/page/params.hpp"
 #include "services/tracker/params.hpp"
 
@@ -36,6 +37,7 @@ struct ConfigSeen {
   std::optional<lidar::Params> lidar_2;     // nullopt: there is none, or its file is wrong
   std::optional<navigator::Params> navigation;
   std::optional<tracker::Params> tracker;
+  std::optional<odometer::Params> odometer;
   std::optional<std::filesystem::path> log_folder;  // as the recorder's config says: may be relative
   std::int64_t log_reserve_bytes = 0;               // which the recorder leaves free
   bool has_plotter_outputs = true;                  // without one lookout-plotter need not run
@@ -154,6 +156,21 @@ struct LookOutSeen {
   Utime alerts_heard{};
 };
 
+/// What the lidar says of its own mounting: what stands keeps its place while the boat moves only with the right one.
+struct MountingSeen {
+  /// Of one axis of the vessel.
+  struct Axis {
+    double turned_rad = 0.0;        // from the mounting of boat.txtpb to the one that was found
+    double sd_rad = 0.0;            // its deviation
+    double reference_sd_rad = 0.0;  // that of the heading, or of the roll or pitch, against which it was found
+  };
+  double watched_s = 0.0;
+  std::string not_known;             // why nothing is told, in words; empty where the axes count
+  std::vector<std::string> missing;  // motions that would help, in words
+  std::string turned_in_words;       // by right angles; empty where it is not
+  std::array<Axis, 3> axes{};        // forward, port, up
+};
+
 /// Needs of the page on this computer, as far as this user may look.
 struct PageSeen {
   bool is_port_taken = false;    // by anybody; ours while the page runs here
@@ -183,7 +200,8 @@ struct Observations {
   std::map<std::string, std::vector<ProcessSeen>> processes;  // by name
   ObstaclesSeen obstacles;
   LookOutSeen look_out;
-  std::string zone_unseen;  // by the scans: into which part of the guard zone nobody looks, in words; empty = none, or no scans
+  std::optional<MountingSeen> mounting;  // nullopt: not asked for
+  std::string zone_unseen;               // by the scans: into which part of the guard zone nobody looks, in words; empty = none, or no scans
   DiskSeen disk;
   PageSeen page;
   Utime end{};  // host time at which watching ended

@@ -177,9 +177,10 @@ Findings CheckProcesses(const Observations& seen) {
 
 Findings CheckAll(const Observations& seen) {
   Findings all;
-  for (const auto& part : {CheckConfig(seen.config), CheckBus(seen.bus), CheckPort(seen), CheckBuffers(seen.buffers), CheckLidar(seen),
-                           CheckSpeakers(seen), CheckWindow(seen), CheckClocks(seen), CheckNavigation(seen), CheckMounting(seen.config),
-                           CheckGuardZone(seen), CheckDisk(seen.disk), CheckProcesses(seen), CheckPlotter(seen), CheckAis(seen), CheckPage(seen)}) {
+  for (const auto& part :
+       {CheckConfig(seen.config), CheckBus(seen.bus), CheckPort(seen), CheckBuffers(seen.buffers), CheckLidar(seen), CheckSpeakers(seen),
+        CheckWindow(seen), CheckClocks(seen), CheckNavigation(seen), CheckMounting(seen.config), CheckMountingSeen(seen), CheckGuardZone(seen),
+        CheckDisk(seen.disk), CheckProcesses(seen), CheckPlotter(seen), CheckAis(seen), CheckPage(seen)}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

@@ -137,7 +137,7 @@ class OwnNavigator {
 
 class Watcher {
  public:
-  explicit Watcher(Observations& seen) : seen_(seen), notes_(seen, runtime::HostNow) {
+  Watcher(Observations& seen, MountingWatch* mounting) : seen_(seen), mounting_(mounting), notes_(seen, runtime::HostNow) {
     if (seen_.bus.fault.empty()) OpenBus();
   }
 
@@ -145,6 +145,7 @@ class Watcher {
     const auto start = SteadyClock::now();
     if (lcm_) ListenUntil(start + kHealthWait);
     notes_.ListenTo(memory_, Via::kItself);
+    if (mounting_ != nullptr) mounting_->ListenTo(memory_);
     OpenOwnSources();
     // Time to see a rate, whenever it began.
     ListenUntil(std::max(start + duration, SteadyClock::now() + duration / 2));
@@ -167,6 +168,7 @@ class Watcher {
       lcm_.emplace(seen_.bus.url);
       notes_.ListenTo(*lcm_, Via::kBus);
       notes_.ListenToProcesses(*lcm_);
+      if (mounting_ != nullptr) mounting_->ListenTo(*lcm_);
       // For a navigator of our own, when the lidar's process runs.
       lcm_->SubscribeRaw(bus::kLidarNmea, [this](std::string_view, Bytes bytes) { memory_.Publish(bus::kLidarNmea, {bytes.begin(), bytes.end()}); });
       lcm_->HandleOnce(std::chrono::milliseconds(0));  // joins LCM's group
@@ -224,6 +226,7 @@ class Watcher {
   }
 
   Observations& seen_;
+  MountingWatch* mounting_;
   Notes notes_;
   bus::MemoryBus memory_;
   std::optional<bus::LcmBus> lcm_;
@@ -373,7 +376,7 @@ void Notes::OnHealth(const health_t& message) {
   }
 }
 
-void Watch(Observations& seen, std::chrono::milliseconds duration) { Watcher(seen).Run(duration); }
+void Watch(Observations& seen, std::chrono::milliseconds duration, MountingWatch* mounting) { Watcher(seen, mounting).Run(duration); }
 
 void ForgivePortsOfProcesses(Observations& seen) {
   if (!seen.lidar.fault.empty() && seen.processes.contains(LidarService())) {

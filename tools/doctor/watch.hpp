@@ -12,6 +12,7 @@
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "services/tracker/core/zone_sight.hpp"
+#include "tools/doctor/mounting_watch.hpp"
 #include "tools/doctor/observations.hpp"
 
 namespace lookout::doctor {
@@ -49,8 +50,9 @@ class Notes {
 
 /// Fills lidar, navigation, processes, obstacles, look-out, the rate of the disk, end and watched_s of `seen`. Sends nothing on the bus.
 ///
-/// @param seen  config and bus are read already
-void Watch(Observations& seen, std::chrono::milliseconds duration);
+/// @param seen      config and bus are read already
+/// @param mounting  listens, too; may be nullptr
+void Watch(Observations& seen, std::chrono::milliseconds duration, MountingWatch* mounting);
 
 /// A port that could not be opened is no fault where the process that reads it was heard after all (on a busy computer its first HEALTH is late):
 /// removes the faults of its ports from `seen`.
