@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The figures of lookout-doctor --mounting (tools/doctor/README.md), measured anew on the simulator: 20 s of one core a run.
+# The figures of lookout-doctor --mounting (tools/doctor/README.md), measured anew on the simulator: 20 s of one core for each seed of a scene.
 #   lab/eval/bump_figures.sh [SEEDS [FIRST [SECONDS]]]   seeds of each scene (default 20), the first of them (default 101), length of a run (default 60)
 # LOOKOUT_BUMP_KEEP=FILE adds the rows of each run to FILE and makes the table of all rows in it. LOOKOUT_BUMP_ROWS="SCENE:NAVIGATION:KINDS ..." runs some
 # rows alone; KINDS: "bump" (by 2 deg: yaw, roll and pitch, up and down, one after the other with the seed), "none", "compass" (3 deg off), joined by "+".
