@@ -28,7 +28,7 @@ struct AxisWords {
 constexpr std::array<AxisWords, 3> kTurnWords{{{"leans {} farther to starboard", "leans {} farther to port", "its lean to a side"},
                                                {"leans {} farther forward", "leans {} farther aft", "its lean forward or aft"},
                                                {"is turned {} farther to port", "is turned {} farther to starboard", "its turn"}}};
-constexpr std::size_t kUp = 2;
+constexpr std::size_t kUpAxis = 2;
 
 double LeastToldDeg(const MountingSeen::Axis& axis) {
   return std::max(kLeastBumpDeg, kLeastBumpSds * RadToDeg(std::hypot(axis.sd_rad, axis.reference_sd_rad)));
@@ -68,7 +68,7 @@ Findings CheckMountingSeen(const Observations& seen) {
     least.push_back(Fixed(LeastToldDeg(axis), 1));
     if (std::abs(RadToDeg(axis.turned_rad)) < LeastToldDeg(axis)) continue;
     bumped.push_back(all.back());
-    (i == kUp ? is_heading_named : is_attitude_named) = true;
+    (i == kUpAxis ? is_heading_named : is_attitude_named) = true;
   }
   if (all.empty()) return {Ok(kBumpSubject, not_known + "the deviations are too large" + missing)};
   if (bumped.empty()) {
