@@ -46,7 +46,9 @@ Findings CheckMountingSeen(const Observations& seen) {
   const auto& mounting = *seen.mounting;
   const std::string not_known = "whether the lidar was bumped is not known: ";
   const std::string missing = mounting.missing.empty() ? "" : "; missing: " + Joined(mounting.missing);
-  if (!mounting.not_known.empty()) return {Ok(kBumpSubject, not_known + mounting.not_known + missing)};
+  // Who asks, and gets no answer, must see that.
+  constexpr const char* kAskAgain = "ask again while the boat turns by 180 deg within 40 m of what stands; --seconds 120 gives more time";
+  if (!mounting.not_known.empty()) return {Warning(kBumpSubject, not_known + mounting.not_known + missing, kAskAgain)};
   const auto by = fmt::format("by what stood around the boat for {} s the lidar ", Fixed(mounting.watched_s, 0));
   const std::string cure = "then lookout-calibrate on a recording of turns near what stands";
   if (!mounting.turned_in_words.empty()) {
@@ -70,7 +72,7 @@ Findings CheckMountingSeen(const Observations& seen) {
     bumped.push_back(all.back());
     (i == kUpAxis ? is_heading_named : is_attitude_named) = true;
   }
-  if (all.empty()) return {Ok(kBumpSubject, not_known + "the deviations are too large" + missing)};
+  if (all.empty()) return {Warning(kBumpSubject, not_known + "the deviations are too large" + missing, kAskAgain)};
   if (bumped.empty()) {
     const std::string of_others = unknown.empty() ? "" : "; not known: " + Joined(unknown) + missing;
     return {Ok(kBumpSubject, by + "points as boat.txtpb says: it " + Joined(all) + "; a bump is told from " + Joined(least) + " deg on" + of_others)};

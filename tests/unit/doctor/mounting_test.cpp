@@ -68,7 +68,7 @@ TEST(DoctorBump, SaysWhyNothingIsKnown) {
   MountingSeen mounting;
   mounting.not_known = "the boat turned too little";
   mounting.missing = {"turn twice", "go 50 m"};
-  EXPECT_SAYS(Say(mounting), kOk, "whether the lidar was bumped is not known: the boat turned too little; missing: turn twice, go 50 m");
+  EXPECT_SAYS(Say(mounting), kWarning, "whether the lidar was bumped is not known: the boat turned too little; missing: turn twice, go 50 m");
 }
 
 TEST(DoctorBump, SaysWhichAngleIsNotKnown) {
@@ -77,7 +77,7 @@ TEST(DoctorBump, SaysWhichAngleIsNotKnown) {
   mounting.axes[2].sd_rad = DegToRad(3.0);
   EXPECT_SAYS(Say(mounting), kOk, "farther forward; a bump is told from 1.0, 1.0 deg on; not known: its turn; missing: go 50 m");
   for (auto& axis : mounting.axes) axis.sd_rad = DegToRad(3.0);
-  EXPECT_SAYS(Say(mounting), kOk, "whether the lidar was bumped is not known: the deviations are too large; missing: go 50 m");
+  EXPECT_SAYS(Say(mounting), kWarning, "whether the lidar was bumped is not known: the deviations are too large; missing: go 50 m");
   mounting.axes[0] = {DegToRad(-2.0), DegToRad(0.05), DegToRad(0.1)};
   EXPECT_SAYS(Say(mounting), kWarning, "the lidar leans 2.0 deg (deviation 0.05) farther to port than");
 }
@@ -107,7 +107,8 @@ TEST(DoctorBump, IsFoundInScansAndPosesAboutEachAxisAndBothWays) {
 
 TEST(DoctorBump, IsNotLookedForWithoutStandingThingsOrPoses) {
   calibrate::Recording empty;
-  EXPECT_SAYS(Say(CompareMounting(empty, calibrate::ParamsWith(Eigen::Matrix3d::Identity()))), kOk, "whether the lidar was bumped is not known: ");
+  EXPECT_SAYS(Say(CompareMounting(empty, calibrate::ParamsWith(Eigen::Matrix3d::Identity()))), kWarning,
+              "whether the lidar was bumped is not known: ");
 }
 
 // Each angle counts where the recording is too short for a calibration of all three.
@@ -117,7 +118,7 @@ TEST(DoctorBump, IsToldByTheAngleThatIsKnownWhereAnotherIsNot) {
   calibration.refusal = "the recording shows too little of the mounting";
   calibration.turned_rad = {DegToRad(2.0), 0.0, DegToRad(2.0)};
   calibration.turned_sd_rad = {DegToRad(0.1), DegToRad(0.1), DegToRad(0.8)};
-  EXPECT_SAYS(Say(MountingOf(calibration, {})), kOk, "is not known: the recording shows too little");
+  EXPECT_SAYS(Say(MountingOf(calibration, {})), kWarning, "is not known: the recording shows too little");
   calibration.is_only_weak = true;
   const auto said = Say(MountingOf(calibration, {}));
   EXPECT_SAYS(said, kWarning, "leans 2.0 deg (deviation 0.10) farther to starboard than");
