@@ -13,8 +13,6 @@
 
 #include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
-#include "common/io/stop_signal.hpp"
-#include "common/runtime/progress.hpp"
 #include "lab/eval/methods/figures.hpp"
 #include "lab/eval/navigation/own_motion.hpp"
 #include "lab/eval/navigation/pose_run.hpp"
@@ -164,12 +162,7 @@ std::vector<OdometryMessage> WhereKnown(std::vector<OdometryMessage> motions, co
 int EvaluateBesideKissIcp(const NavigationOptions& options) {
   const auto boat = config::LoadBoat(options.config_folder);
   std::vector<MethodScores> results;
-  runtime::Progress progress("lookout-eval", stderr);
-  const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
-  double num_done = 0.0;
-  ForEachRun(options, [&](const fs::path& file, const std::string& name, std::uint64_t seed) {
-    io::ThrowIfStopAsked();
-    progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", name, seed); });
+  ForEachRunWithProgress(options, [&](const fs::path& file, const std::string& name, std::uint64_t seed) {
     if (results.empty() || results.back().scene != name) {
       results.push_back({name, "odometer", {}, 0.0});
       results.push_back({name, "KISS-ICP", {}, 0.0});
@@ -203,12 +196,7 @@ int EvaluateNavigation(const NavigationOptions& options) {
   const auto cases = Cases(options);
   const auto boat = config::LoadBoat(options.config_folder);
   NavigationResults results;
-  runtime::Progress progress("lookout-eval", stderr);
-  const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
-  double num_done = 0.0;
-  ForEachRun(options, [&](const fs::path& file, const std::string& name, std::uint64_t seed) {
-    io::ThrowIfStopAsked();
-    progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", name, seed); });
+  ForEachRunWithProgress(options, [&](const fs::path& file, const std::string& name, std::uint64_t seed) {
     if (results.scenes.empty() || results.scenes.back() != name) results.scenes.push_back(name);
     const auto scene = sim::LoadScene(file, seed);
     const auto motions = OdometryOf(options.config_folder, scene, seed, options.plan.seconds, KeptFile(options, name, seed));

@@ -20,7 +20,6 @@
 #include "common/core/angles.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
-#include "common/runtime/progress.hpp"
 #include "config/schema/tracker.pb.h"
 #include "lab/eval/baselines/nearest_neighbour.hpp"
 #include "lab/eval/methods/figures.hpp"
@@ -152,7 +151,6 @@ void AddTo(std::vector<TrackRow>& runs, std::vector<TrackRow> rows) {
 // @param lidar  the head; empty: as the scenes say
 std::vector<TrackRow> RunScenes(const TrackOptions& options, const std::string& lidar, std::ostream* events) {
   std::vector<TrackRow> runs;
-  runtime::Progress progress("lookout-eval", stderr);
   const auto ablations = AblationsOf(options);
   const LeaveOutEvidence evidence(options.weights_folder, options.left_out);
   std::optional<ConfigWithEvidence> with_evidence;
@@ -161,10 +159,7 @@ std::vector<TrackRow> RunScenes(const TrackOptions& options, const std::string& 
   if (options.is_without_earth) without_earth.emplace(options.config_folder);
   const auto boat = config::LoadBoat(options.config_folder);
   const int nmea_port = sim::ParamsOfConfig(options.config_folder).navigation.nmea_port;
-  const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
-  double num_done = 0.0;
-  ForEachRun(options, [&](const fs::path& file, const std::string& scene, std::uint64_t seed) {
-    progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", scene, seed); });
+  ForEachRunWithProgress(options, [&](const fs::path& file, const std::string& scene, std::uint64_t seed) {
     Truth truth(1);
     if (!options.left_out.empty() && evidence_of != scene) {
       with_evidence.emplace(options.config_folder, evidence.FileOf(scene));

@@ -1,11 +1,13 @@
 #include "lab/eval/tracks/track_sources.hpp"
 
+#include <fmt/format.h>
 #include <stdlib.h>
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <google/protobuf/text_format.h>
 #include <limits>
 #include <map>
@@ -19,6 +21,7 @@
 #include "common/core/angles.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
 #include "config/schema/navigator.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "lab/data/csv_file.hpp"
@@ -196,13 +199,23 @@ void BeginRuns(const RunOptions& options, bool has_captures, const std::string& 
   FillBlocksOf(options.block_files, {});
 }
 
-void ForEachRun(const RunOptions& options,
-                const std::function<void(const std::filesystem::path& file, const std::string& scene, std::uint64_t seed)>& handle) {
+void ForEachRun(const RunOptions& options, const RunHandler& handle) {
   for (const auto& name : options.plan.scenes) {
     const auto file = sim::FindScene(name, options.config_folder);
     const auto scene = SceneLabel(name);
     for (int k = 0; k < options.plan.num_seeds; ++k) handle(file, scene, options.plan.first_seed + static_cast<std::uint64_t>(k));
   }
+}
+
+void ForEachRunWithProgress(const RunOptions& options, const RunHandler& handle) {
+  runtime::Progress progress("lookout-eval", stderr);
+  const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
+  double num_done = 0.0;
+  ForEachRun(options, [&](const fs::path& file, const std::string& scene, std::uint64_t seed) {
+    io::ThrowIfStopAsked();
+    progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", scene, seed); });
+    handle(file, scene, seed);
+  });
 }
 
 Polygon OwnHullOf(const config::BoatFacts& boat) {

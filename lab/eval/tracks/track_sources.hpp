@@ -33,9 +33,13 @@ struct RunOptions {
 /// @throws config::ConfigError; std::invalid_argument for seeds of the other range and where nothing is to be run; std::runtime_error for files
 void BeginRuns(const RunOptions& options, bool has_captures, const std::string& option);
 
+using RunHandler = std::function<void(const std::filesystem::path& file, const std::string& scene, std::uint64_t seed)>;
+
 /// Calls handle(file, scene, seed) for each scene and seed of the plan.
-void ForEachRun(const RunOptions& options,
-                const std::function<void(const std::filesystem::path& file, const std::string& scene, std::uint64_t seed)>& handle);
+void ForEachRun(const RunOptions& options, const RunHandler& handle);
+
+/// As ForEachRun, with progress on stderr. @throws io::Stopped between two runs
+void ForEachRunWithProgress(const RunOptions& options, const RunHandler& handle);
 
 /// The time 0 of simulated runs, as lookout-sim has it: any date serves, as long as it is always the same.
 inline constexpr Utime kSimulationStart{std::chrono::microseconds(1'781'532'600'000'000)};
