@@ -33,6 +33,38 @@ bool LookAlike(const Eigen::Vector3f& normal, Shape shape, const Eigen::Vector3f
   return shape != Shape::kSurface || std::abs(normal.dot(other_normal)) > kLeastCosine;
 }
 
+// The slabs of cubes along one axis that reach within a radius of a value, nearest first, and how far their points are away at least.
+class Gaps {
+ public:
+  struct Gap {
+    int cube;
+    float squared_m2;
+  };
+  Gaps(double value_m, double radius_m) {
+    const int own = static_cast<int>(std::floor(value_m / LocalMap::kSideM));
+    Add(own, 0.0);
+    for (int step = 1; num_ + 1 < gaps_.size(); ++step) {
+      // Kept points are rounded: they may lie outside of their cubes, by less than a millimetre or two.
+      const double below_m = value_m - ((own - step + 1) * LocalMap::kSideM) - kRoundingM;
+      const double above_m = ((own + step) * LocalMap::kSideM) - value_m - kRoundingM;
+      if (below_m > radius_m && above_m > radius_m) break;
+      if (below_m <= radius_m) Add(own - step, below_m);
+      if (above_m <= radius_m) Add(own + step, above_m);
+    }
+  }
+  auto begin() const { return gaps_.begin(); }
+  auto end() const { return gaps_.begin() + num_; }
+
+ private:
+  static constexpr double kRoundingM = 0.002;
+  void Add(int cube, double gap_m) {
+    const double distance_m = std::max(0.0, gap_m);
+    gaps_[num_++] = {cube, static_cast<float>(distance_m * distance_m)};
+  }
+  std::array<Gap, 16> gaps_;
+  std::size_t num_ = 0;
+};
+
 Eigen::Matrix3d WeightOf(const Eigen::Vector3f& normal, Shape shape) {
   if (shape == Shape::kSurface) {
     const Eigen::Vector3d across = normal.cast<double>();
@@ -122,15 +154,19 @@ void LocalMap::Forget(const Eigen::Vector3d& center_m, double radius_m) {
 }
 
 std::optional<Match> LocalMap::Nearest(const MapPoint& point, double radius_m) const {
-  const Eigen::Vector3i low = CubeOf(point.p_m - Eigen::Vector3d::Constant(radius_m), kSideM);
-  const Eigen::Vector3i high = CubeOf(point.p_m + Eigen::Vector3d::Constant(radius_m), kSideM);
+  const Gaps x_gaps(point.p_m.x(), radius_m);
+  const Gaps y_gaps(point.p_m.y(), radius_m);
+  const Gaps z_gaps(point.p_m.z(), radius_m);
   const Eigen::Vector3f p_m = point.p_m.cast<float>();
   const Eigen::Vector3f normal = point.normal.cast<float>();
   float nearest_m2 = static_cast<float>(radius_m * radius_m);
   const Kept* nearest = nullptr;
-  for (int x = low.x(); x <= high.x(); ++x) {
-    for (int y = low.y(); y <= high.y(); ++y) {
-      for (int z = low.z(); z <= high.z(); ++z) {
+  for (const auto& [x, x_m2] : x_gaps) {
+    if (x_m2 >= nearest_m2) continue;
+    for (const auto& [y, y_m2] : y_gaps) {
+      if (x_m2 + y_m2 >= nearest_m2) continue;
+      for (const auto& [z, z_m2] : z_gaps) {
+        if (x_m2 + y_m2 + z_m2 >= nearest_m2) continue;
         const auto number = index_.Find({x, y, z});
         if (number == CubeIndex::kNone) continue;
         const Cube& cube = cubes_[static_cast<std::size_t>(number)];

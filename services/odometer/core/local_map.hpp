@@ -66,6 +66,7 @@ class LocalMap {
   /// Cubes farther than this from `center_m` are forgotten.
   void Forget(const Eigen::Vector3d& center_m, double radius_m);
 
+  /// @param radius_m at most 6 m
   /// @return nullopt where no point of the map that looks alike lies within `radius_m`
   std::optional<Match> Nearest(const MapPoint& point, double radius_m) const;
 
