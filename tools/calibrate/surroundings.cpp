@@ -14,6 +14,8 @@ constexpr std::size_t kMaxSample = 400;
 // A pair counts where so many returns of the one fit what the other saw, and they are so large a part of those near something.
 constexpr int kLeastMatched = 60;
 constexpr double kLeastShareOfNear = 0.5;
+// Hulls flare: a return is compared with what was seen at its own height.
+constexpr double kSameHeightM = 0.05;
 // Deviations of a direction that nothing shows: so large that it does not count, and the matrix can be inverted.
 constexpr double kUnseenM = 10.0;
 constexpr double kUnseenRad = 1.0;
@@ -82,13 +84,18 @@ class MotionFinder {
     }
   }
 
+  // The scan of the moment comes first: a place of the map keeps the points that it got first, and those of other scans lie where POSE says.
   void AddSurroundings(std::size_t middle, const Eigen::Vector3d& origin_m, odometer::LocalMap& map) const {
-    const std::size_t from = middle - std::min(middle, params_.half_scans);
-    const std::size_t to = std::min(scans_.size() - 1, middle + params_.half_scans);
-    for (std::size_t i = from; i <= to; ++i) {
-      if (!moments_[i]) continue;
-      for (const auto& point : moments_[i]->points) map.Add(Placed(point, moments_[i]->T_map_vessel, origin_m));
+    AddPoints(middle, origin_m, map);
+    for (std::size_t off = 1; off <= params_.half_scans; ++off) {
+      if (off <= middle) AddPoints(middle - off, origin_m, map);
+      if (middle + off < scans_.size()) AddPoints(middle + off, origin_m, map);
     }
+  }
+
+  void AddPoints(std::size_t scan, const Eigen::Vector3d& origin_m, odometer::LocalMap& map) const {
+    if (!moments_[scan]) return;
+    for (const auto& point : moments_[scan]->points) map.Add(Placed(point, moments_[scan]->T_map_vessel, origin_m));
   }
 
   void AddMotion(std::size_t begin, std::size_t end, const Eigen::Vector3d& origin_m, const odometer::LocalMap& map,
@@ -98,7 +105,7 @@ class MotionFinder {
     expected.T_map_vessel = moments_[end]->T_map_vessel;
     expected.T_map_vessel.translation() -= origin_m;
     expected.T_map_begin = expected.T_map_vessel;
-    expected.search_m = params_.search_m;
+    expected.search = {params_.search_m, kSameHeightM};
     for (int i = 0; i < 3; ++i) {
       expected.information(i, i) = 1.0 / (kUnseenM * kUnseenM);
       expected.information(i + 3, i + 3) = 1.0 / (kUnseenRad * kUnseenRad);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "common/core/angles.hpp"
@@ -114,7 +115,7 @@ class RangeImage {
   bool Describe(int column, int ring, TimedPoint& point) const;
 
  private:
-  bool IsPost(int column, int ring, double range_m) const;
+  std::optional<Vector3d> MiddleOfPost(int column, int ring, double range_m) const;
   struct Along {
     Vector3d along_m = Vector3d::Zero();  // 0: no neighbour says
     bool is_uneven = false;
@@ -133,25 +134,27 @@ class RangeImage {
   std::vector<int> reach_down_;
 };
 
-// Whether sight is free on both sides of something narrow.
-bool RangeImage::IsPost(int column, int ring, double range_m) const {
+// Middle of the returns of something narrow with free sight on both sides: whichever of its columns is asked for, the post is in one place.
+std::optional<Vector3d> RangeImage::MiddleOfPost(int column, int ring, double range_m) const {
   const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
   const double column_m = std::max(1e-3, range_m * column_rad_);
   const int most_columns = std::min(num_columns_, static_cast<int>(kPostM / column_m) + 1);
   int width = 1;
+  Vector3d sum_m = PointAt(column, ring);
   for (const int side : {-1, 1}) {
     int next = side;
     while (width <= most_columns && IsNear(column, next, ring, range_m, step_m)) {
+      sum_m += PointAt(column + next, ring);
       ++width;
       next += side;
     }
     // At the edge of the field of view the rest of a wall may be out of sight.
-    if (width > most_columns || !Adjoins(column, next)) return false;
+    if (width > most_columns || !Adjoins(column, next)) return std::nullopt;
     // Something nearer hides the rest.
     const double beside_m = RangeM(column + next, ring);
-    if (beside_m > 0.0 && beside_m < range_m) return false;
+    if (beside_m > 0.0 && beside_m < range_m) return std::nullopt;
   }
-  return true;
+  return sum_m / width;
 }
 
 // Direction of the surface along the ring.
@@ -189,7 +192,8 @@ Vector3d RangeImage::AcrossRings(int column, int ring, const Vector3d& p_m, doub
 
 bool RangeImage::Describe(int column, int ring, TimedPoint& point) const {
   const double range_m = RangeM(column, ring);
-  if (IsPost(column, ring, range_m)) {
+  if (const auto middle_m = MiddleOfPost(column, ring, range_m)) {
+    point.p_vessel_m = *middle_m;
     point.shape = Shape::kPost;
     return true;
   }

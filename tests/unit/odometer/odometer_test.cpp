@@ -1,10 +1,13 @@
 // Motion from scan to scan, of scenes with known motion.
 #include "services/odometer/core/odometer.hpp"
 
+#include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 
 #include "common/core/angles.hpp"
+#include "services/odometer/core/local_map.hpp"
 #include "tests/unit/odometer/made_scene.hpp"
 
 namespace lookout::odometer {
@@ -263,6 +266,8 @@ TEST(Odometer, AWallHasItsNormalAndAPostHasBothDirections) {
   for (const auto& point : StandingPoints(MakeScan(0, walls, {}), 0.5, MadeParams().standing)) {
     if (point.p_vessel_m.x() < 0.0) {
       EXPECT_EQ(point.shape, Shape::kPost);
+      // In its middle, not where the sweep meets it first: 0.15 m off.
+      EXPECT_NEAR(point.p_vessel_m.y(), 0.0, 0.03);
       ++num_posts;
     } else if (std::abs(point.p_vessel_m.y()) < 15.0) {
       ASSERT_EQ(point.shape, Shape::kSurface);
@@ -272,6 +277,24 @@ TEST(Odometer, AWallHasItsNormalAndAPostHasBothDirections) {
   }
   EXPECT_GT(num_walls, 20);
   EXPECT_GT(num_posts, 2);
+}
+
+TEST(LocalMap, TheNearestPointLiesInReachAndAtTheSameHeight) {
+  LocalMap map;
+  const auto post = [](double x_m, double z_m) { return MapPoint{{x_m, 0.0, z_m}, Eigen::Vector3d::Zero(), Shape::kPost}; };
+  map.Add(post(0.1, 0.9));    // another cube above
+  map.Add(post(-0.4, 1.55));  // another cube to the side
+  const auto nearest_x_m = [&](const Search& search) {
+    const auto match = map.Nearest(post(0.1, 1.5), search);
+    return match ? match->p_map_m.x() : std::numeric_limits<double>::quiet_NaN();
+  };
+  EXPECT_NEAR(nearest_x_m({1.0}), -0.4, 1e-6);  // 0.50 m away, the one below it 0.60 m
+  EXPECT_NEAR(nearest_x_m({1.0, 0.1}), -0.4, 1e-6);
+  EXPECT_TRUE(std::isnan(nearest_x_m({1.0, 0.01})));
+  EXPECT_TRUE(std::isnan(nearest_x_m({0.45})));
+  map.Add(post(0.1, 1.1));
+  EXPECT_NEAR(nearest_x_m({1.0}), 0.1, 1e-6);
+  EXPECT_NEAR(nearest_x_m({1.0, 0.1}), -0.4, 1e-6);  // what is nearer is at another height
 }
 
 // The columns from `first` on alone, as of a sensor with a limited field of view.
