@@ -61,7 +61,7 @@ class Gaps {
     const double distance_m = std::max(0.0, gap_m);
     gaps_[num_++] = {cube, static_cast<float>(distance_m * distance_m)};
   }
-  std::array<Gap, 16> gaps_;
+  std::array<Gap, 16> gaps_{};
   std::size_t num_ = 0;
 };
 
