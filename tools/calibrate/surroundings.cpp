@@ -14,8 +14,6 @@ constexpr std::size_t kMaxSample = 400;
 // A pair counts where so many returns of the one fit what the other saw, and they are so large a part of those near something.
 constexpr int kLeastMatched = 60;
 constexpr double kLeastShareOfNear = 0.5;
-// Hulls flare: a return is compared with what was seen at its own height.
-constexpr double kSameHeightM = 0.05;
 // Deviations of a direction that nothing shows: so large that it does not count, and the matrix can be inverted.
 constexpr double kUnseenM = 10.0;
 constexpr double kUnseenRad = 1.0;
@@ -105,7 +103,7 @@ class MotionFinder {
     expected.T_map_vessel = moments_[end]->T_map_vessel;
     expected.T_map_vessel.translation() -= origin_m;
     expected.T_map_begin = expected.T_map_vessel;
-    expected.search = {params_.search_m, kSameHeightM};
+    expected.search_m = params_.search_m;
     for (int i = 0; i < 3; ++i) {
       expected.information(i, i) = 1.0 / (kUnseenM * kUnseenM);
       expected.information(i + 3, i + 3) = 1.0 / (kUnseenRad * kUnseenRad);

@@ -153,14 +153,13 @@ void LocalMap::Forget(const Eigen::Vector3d& center_m, double radius_m) {
   cubes_ = std::move(kept);
 }
 
-std::optional<Match> LocalMap::Nearest(const MapPoint& point, const Search& search) const {
-  const Gaps x_gaps(point.p_m.x(), search.radius_m);
-  const Gaps y_gaps(point.p_m.y(), search.radius_m);
-  const Gaps z_gaps(point.p_m.z(), std::min(search.radius_m, search.height_m));
+std::optional<Match> LocalMap::Nearest(const MapPoint& point, double radius_m) const {
+  const Gaps x_gaps(point.p_m.x(), radius_m);
+  const Gaps y_gaps(point.p_m.y(), radius_m);
+  const Gaps z_gaps(point.p_m.z(), radius_m);
   const Eigen::Vector3f p_m = point.p_m.cast<float>();
   const Eigen::Vector3f normal = point.normal.cast<float>();
-  const auto height_m = static_cast<float>(search.height_m);
-  float nearest_m2 = static_cast<float>(search.radius_m * search.radius_m);
+  float nearest_m2 = static_cast<float>(radius_m * radius_m);
   const Kept* nearest = nullptr;
   for (const auto& [x, x_m2] : x_gaps) {
     if (x_m2 >= nearest_m2) continue;
@@ -174,8 +173,7 @@ std::optional<Match> LocalMap::Nearest(const MapPoint& point, const Search& sear
         for (std::size_t i = 0; i < cube.num_points; ++i) {
           const Kept& kept = cube.points[i];
           const float distance_m2 = (kept.p_m - p_m).squaredNorm();
-          if (distance_m2 >= nearest_m2 || std::abs(kept.p_m.z() - p_m.z()) > height_m || !LookAlike(normal, point.shape, kept.normal, kept.shape))
-            continue;
+          if (distance_m2 >= nearest_m2 || !LookAlike(normal, point.shape, kept.normal, kept.shape)) continue;
           nearest_m2 = distance_m2;
           nearest = &kept;
         }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -56,12 +55,6 @@ struct Match {
   Eigen::Vector3d along;    // level, along a surface; its length is the standard deviation of the normal (rad)
 };
 
-/// How far from a return its point of the map may lie.
-struct Search {
-  double radius_m = 0.5;                                      // at most 6 m
-  double height_m = std::numeric_limits<double>::infinity();  // of which above or below: a hull that flares is elsewhere at another height
-};
-
 class LocalMap {
  public:
   static constexpr double kSideM = 1.0;
@@ -73,8 +66,9 @@ class LocalMap {
   /// Cubes farther than this from `center_m` are forgotten.
   void Forget(const Eigen::Vector3d& center_m, double radius_m);
 
-  /// @return nullopt where no point of the map that looks alike lies so near
-  std::optional<Match> Nearest(const MapPoint& point, const Search& search) const;
+  /// @param radius_m at most 6 m
+  /// @return nullopt where no point of the map that looks alike lies within `radius_m`
+  std::optional<Match> Nearest(const MapPoint& point, double radius_m) const;
 
   std::size_t num_cubes() const { return cubes_.size(); }
 

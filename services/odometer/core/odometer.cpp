@@ -209,7 +209,7 @@ Odometer::Prediction Odometer::Predict(double since_s) {
   }
   expected.information(2, 2) = 1.0 / (kHeaveSdM * kHeaveSdM);
   expected.information(3, 3) = expected.information(4, 4) = 1.0 / (kTiltSdRad * kTiltSdRad);
-  expected.search.radius_m = std::clamp(kLeastSearchM + 3.0 * std::sqrt(std::max(planar(0, 0), planar(1, 1))), kLeastSearchM, kMostSearchM);
+  expected.search_m = std::clamp(kLeastSearchM + 3.0 * std::sqrt(std::max(planar(0, 0), planar(1, 1))), kLeastSearchM, kMostSearchM);
   return predicted;
 }
 

@@ -41,7 +41,7 @@ struct Normal {
 };
 
 // Also says which returns are matched.
-Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_vessel, const Search& search, double scale_m, const LocalMap& map,
+Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_vessel, double search_m, double scale_m, const LocalMap& map,
            Fit& fit) {
   Normal normal;
   fit.information_spurious.setZero();
@@ -50,7 +50,7 @@ Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_v
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d arm_m = T_map_vessel.linear() * points[i].p_m;
     const Eigen::Vector3d p_map_m = arm_m + T_map_vessel.translation();
-    const auto match = map.Nearest({p_map_m, T_map_vessel.linear() * points[i].normal, points[i].shape}, search);
+    const auto match = map.Nearest({p_map_m, T_map_vessel.linear() * points[i].normal, points[i].shape}, search_m);
     fit.is_near[i] = match.has_value();
     fit.is_matched[i] = false;
     if (!match) continue;
@@ -95,8 +95,8 @@ Fit Register(const std::vector<MapPoint>& points, const Expected& expected, cons
   fit.is_near.assign(points.size(), false);
   fit.is_matched.assign(points.size(), false);
   for (int i = 0; i < kMaxIterations; ++i) {
-    const double scale_m = i < kWideIterations ? std::max(kScaleM, expected.search.radius_m / 3.0) : kScaleM;
-    const auto normal = Sum(points, fit.T_map_vessel, expected.search, scale_m, map, fit);
+    const double scale_m = i < kWideIterations ? std::max(kScaleM, expected.search_m / 3.0) : kScaleM;
+    const auto normal = Sum(points, fit.T_map_vessel, expected.search_m, scale_m, map, fit);
     fit.information_seen = normal.information;
     fit.information = normal.information + expected.information;
     const Vector6 gradient = normal.gradient + expected.information * Difference(fit.T_map_vessel, expected.T_map_vessel);

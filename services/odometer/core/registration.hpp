@@ -25,7 +25,7 @@ struct Expected {
   Eigen::Isometry3d T_map_begin = Eigen::Isometry3d::Identity();
   /// Inverse of the covariance of place and rotation; 0 = nothing is known of a direction.
   Matrix6 information = Matrix6::Zero();
-  Search search;  // a return may lie so far from where it was seen before
+  double search_m = 0.5;  // a return may lie so far from where it was seen before
 };
 
 struct Fit {

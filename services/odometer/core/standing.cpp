@@ -1,8 +1,10 @@
 #include "services/odometer/core/standing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -115,7 +117,7 @@ class RangeImage {
   bool Describe(int column, int ring, TimedPoint& point) const;
 
  private:
-  std::optional<Vector3d> MiddleOfPost(int column, int ring, double range_m) const;
+  std::optional<Vector3d> CentreOfPost(int column, int ring, double range_m) const;
   struct Along {
     Vector3d along_m = Vector3d::Zero();  // 0: no neighbour says
     bool is_uneven = false;
@@ -134,17 +136,21 @@ class RangeImage {
   std::vector<int> reach_down_;
 };
 
-// Middle of the returns of something narrow with free sight on both sides: whichever of its columns is asked for, the post is in one place.
-std::optional<Vector3d> RangeImage::MiddleOfPost(int column, int ring, double range_m) const {
+// Centre of something narrow with free sight on both sides: the same place from wherever it is seen. Its returns lie on the side that faces the
+// lidar; of a round post these are on average pi/4 of the radius before the axis.
+std::optional<Vector3d> RangeImage::CentreOfPost(int column, int ring, double range_m) const {
   const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
   const double column_m = std::max(1e-3, range_m * column_rad_);
   const int most_columns = std::min(num_columns_, static_cast<int>(kPostM / column_m) + 1);
   int width = 1;
   Vector3d sum_m = PointAt(column, ring);
+  std::array<Vector3d, 2> ends_m{sum_m, sum_m};
   for (const int side : {-1, 1}) {
+    Vector3d& end_m = ends_m[side < 0 ? 0 : 1];
     int next = side;
     while (width <= most_columns && IsNear(column, next, ring, range_m, step_m)) {
-      sum_m += PointAt(column + next, ring);
+      end_m = PointAt(column + next, ring);
+      sum_m += end_m;
       ++width;
       next += side;
     }
@@ -154,7 +160,10 @@ std::optional<Vector3d> RangeImage::MiddleOfPost(int column, int ring, double ra
     const double beside_m = RangeM(column + next, ring);
     if (beside_m > 0.0 && beside_m < range_m) return std::nullopt;
   }
-  return sum_m / width;
+  const Vector3d face_m = sum_m / width;
+  const double radius_m = 0.5 * (ends_m[1] - ends_m[0]).norm();
+  const Vector3d outward = (face_m - T_vessel_lidar_.translation()).normalized();
+  return face_m + (0.25 * std::numbers::pi * radius_m) * outward;
 }
 
 // Direction of the surface along the ring.
@@ -192,8 +201,8 @@ Vector3d RangeImage::AcrossRings(int column, int ring, const Vector3d& p_m, doub
 
 bool RangeImage::Describe(int column, int ring, TimedPoint& point) const {
   const double range_m = RangeM(column, ring);
-  if (const auto middle_m = MiddleOfPost(column, ring, range_m)) {
-    point.p_vessel_m = *middle_m;
+  if (const auto centre_m = CentreOfPost(column, ring, range_m)) {
+    point.p_vessel_m = *centre_m;
     point.shape = Shape::kPost;
     return true;
   }

@@ -266,8 +266,6 @@ TEST(Odometer, AWallHasItsNormalAndAPostHasBothDirections) {
   for (const auto& point : StandingPoints(MakeScan(0, walls, {}), 0.5, MadeParams().standing)) {
     if (point.p_vessel_m.x() < 0.0) {
       EXPECT_EQ(point.shape, Shape::kPost);
-      // In its middle, not where the sweep meets it first: 0.15 m off.
-      EXPECT_NEAR(point.p_vessel_m.y(), 0.0, 0.03);
       ++num_posts;
     } else if (std::abs(point.p_vessel_m.y()) < 15.0) {
       ASSERT_EQ(point.shape, Shape::kSurface);
@@ -279,22 +277,65 @@ TEST(Odometer, AWallHasItsNormalAndAPostHasBothDirections) {
   EXPECT_GT(num_posts, 2);
 }
 
-TEST(LocalMap, TheNearestPointLiesInReachAndAtTheSameHeight) {
+// It lay where the sweep met it first, half of its width to one side.
+TEST(Odometer, ARoundPostLiesAtItsCentreFromWhereverItIsSeen) {
+  constexpr double kRadiusM = 0.2;
+  constexpr int kCorners = 16;
+  for (const Eigen::Vector2d& centre_m : {Eigen::Vector2d(8.0, 0.0), {-8.0, 0.0}, {0.0, 8.0}, {0.0, -8.0}, {4.0, -3.0}}) {
+    const auto corner_m = [&](int i) {
+      const double angle_rad = 2.0 * std::numbers::pi * i / kCorners;
+      return Eigen::Vector2d(centre_m + kRadiusM * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad)));
+    };
+    std::vector<Wall> walls;
+    for (int i = 0; i < kCorners; ++i) walls.push_back({corner_m(i), corner_m(i + 1)});
+    const auto points = StandingPoints(MakeScan(0, walls, {}), 0.5, MadeParams().standing);
+    EXPECT_GT(points.size(), 2U);
+    for (const auto& point : points) {
+      EXPECT_EQ(point.shape, Shape::kPost);
+      EXPECT_LT((point.p_vessel_m.head<2>() - centre_m).norm(), 0.05) << point.p_vessel_m.transpose();
+    }
+  }
+}
+
+TEST(LocalMap, TheNearestPointMayLieInAnotherCube) {
   LocalMap map;
   const auto post = [](double x_m, double z_m) { return MapPoint{{x_m, 0.0, z_m}, Eigen::Vector3d::Zero(), Shape::kPost}; };
-  map.Add(post(0.1, 0.9));    // another cube above
-  map.Add(post(-0.4, 1.55));  // another cube to the side
-  const auto nearest_x_m = [&](const Search& search) {
-    const auto match = map.Nearest(post(0.1, 1.5), search);
+  map.Add(post(0.1, 0.9));    // below, 0.60 m away
+  map.Add(post(-0.4, 1.55));  // to the side, 0.50 m away
+  const auto nearest_x_m = [&](double radius_m) {
+    const auto match = map.Nearest(post(0.1, 1.5), radius_m);
     return match ? match->p_map_m.x() : std::numeric_limits<double>::quiet_NaN();
   };
-  EXPECT_NEAR(nearest_x_m({1.0}), -0.4, 1e-6);  // 0.50 m away, the one below it 0.60 m
-  EXPECT_NEAR(nearest_x_m({1.0, 0.1}), -0.4, 1e-6);
-  EXPECT_TRUE(std::isnan(nearest_x_m({1.0, 0.01})));
-  EXPECT_TRUE(std::isnan(nearest_x_m({0.45})));
+  EXPECT_NEAR(nearest_x_m(1.0), -0.4, 1e-6);
+  EXPECT_TRUE(std::isnan(nearest_x_m(0.45)));
   map.Add(post(0.1, 1.1));
-  EXPECT_NEAR(nearest_x_m({1.0}), 0.1, 1e-6);
-  EXPECT_NEAR(nearest_x_m({1.0, 0.1}), -0.4, 1e-6);  // what is nearer is at another height
+  EXPECT_NEAR(nearest_x_m(1.0), 0.1, 1e-6);
+}
+
+// A search that looks into few cubes finds what a search through all points finds.
+TEST(LocalMap, TheNearestPointIsThatOfASearchThroughAll) {
+  std::mt19937 random(1);
+  const auto draw = [&random](double half_m) { return half_m * (2.0 * (static_cast<double>(random()) / 4294967295.0) - 1.0); };
+  LocalMap map;
+  std::vector<Eigen::Vector3d> kept_m;
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d p_m(draw(4.0), draw(4.0), draw(4.0));
+    // Those that the map would leave out as too near to another.
+    if (std::ranges::any_of(kept_m, [&](const Eigen::Vector3d& other_m) { return (other_m - p_m).norm() < 0.3; })) continue;
+    kept_m.push_back(p_m);
+    map.Add({p_m, Eigen::Vector3d::Zero(), Shape::kPost});
+  }
+  for (const double radius_m : {0.5, 2.0, 6.0}) {
+    for (int i = 0; i < 200; ++i) {
+      const Eigen::Vector3d p_m(draw(6.0), draw(6.0), draw(6.0));
+      const auto nearest_m = std::ranges::min_element(kept_m, {}, [&](const Eigen::Vector3d& other_m) { return (other_m - p_m).norm(); });
+      const auto match = map.Nearest({p_m, Eigen::Vector3d::Zero(), Shape::kPost}, radius_m);
+      ASSERT_EQ(match.has_value(), (*nearest_m - p_m).norm() < radius_m);
+      if (match) {
+        EXPECT_LT((match->p_map_m - *nearest_m).norm(), 1e-5);
+      }
+    }
+  }
 }
 
 // The columns from `first` on alone, as of a sensor with a limited field of view.
