@@ -33,7 +33,7 @@ bool LookAlike(const Eigen::Vector3f& normal, Shape shape, const Eigen::Vector3f
   return shape != Shape::kSurface || std::abs(normal.dot(other_normal)) > kLeastCosine;
 }
 
-// The slabs of cubes along one axis that reach within a radius of a value, nearest first, and how far their points are away at least.
+// The slabs of cubes along one axis that reach within a radius of a value, its own first, and how far their points are away at least.
 class Gaps {
  public:
   struct Gap {
@@ -43,7 +43,7 @@ class Gaps {
   Gaps(double value_m, double radius_m) {
     const int own = static_cast<int>(std::floor(value_m / LocalMap::kSideM));
     Add(own, 0.0);
-    for (int step = 1; num_ + 1 < gaps_.size(); ++step) {
+    for (int step = 1; step <= kMostSteps; ++step) {
       // Kept points are rounded: they may lie outside of their cubes, by less than a millimetre or two.
       const double below_m = value_m - ((own - step + 1) * LocalMap::kSideM) - kRoundingM;
       const double above_m = ((own + step) * LocalMap::kSideM) - value_m - kRoundingM;
@@ -57,11 +57,12 @@ class Gaps {
 
  private:
   static constexpr double kRoundingM = 0.002;
+  static constexpr int kMostSteps = 7;
   void Add(int cube, double gap_m) {
     const double distance_m = std::max(0.0, gap_m);
     gaps_[num_++] = {cube, static_cast<float>(distance_m * distance_m)};
   }
-  std::array<Gap, 16> gaps_{};
+  std::array<Gap, 1 + 2 * kMostSteps> gaps_{};
   std::size_t num_ = 0;
 };
 
@@ -173,7 +174,7 @@ std::optional<Match> LocalMap::Nearest(const MapPoint& point, double radius_m) c
         for (std::size_t i = 0; i < cube.num_points; ++i) {
           const Kept& kept = cube.points[i];
           const float distance_m2 = (kept.p_m - p_m).squaredNorm();
-          if (distance_m2 >= nearest_m2 || !LookAlike(normal, point.shape, kept.normal, kept.shape)) continue;
+          if (!(distance_m2 < nearest_m2) || !LookAlike(normal, point.shape, kept.normal, kept.shape)) continue;
           nearest_m2 = distance_m2;
           nearest = &kept;
         }

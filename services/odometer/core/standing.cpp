@@ -1,7 +1,6 @@
 #include "services/odometer/core/standing.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -137,31 +136,31 @@ class RangeImage {
 };
 
 // Centre of something narrow with free sight on both sides: the same place from wherever it is seen. Its returns lie on the side that faces the
-// lidar; of a round post these are on average pi/4 of the radius before the axis.
+// lidar; of a round post these are on average pi/4 of the radius before the axis. The centre lies behind them along the sight, not level: which way
+// is up is not known here.
 std::optional<Vector3d> RangeImage::CentreOfPost(int column, int ring, double range_m) const {
   const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
   const double column_m = std::max(1e-3, range_m * column_rad_);
   const int most_columns = std::min(num_columns_, static_cast<int>(kPostM / column_m) + 1);
-  int width = 1;
-  Vector3d sum_m = PointAt(column, ring);
-  std::array<Vector3d, 2> ends_m{sum_m, sum_m};
+  int first = column;
+  int last = column;
   for (const int side : {-1, 1}) {
-    Vector3d& end_m = ends_m[side < 0 ? 0 : 1];
-    int next = side;
-    while (width <= most_columns && IsNear(column, next, ring, range_m, step_m)) {
-      end_m = PointAt(column + next, ring);
-      sum_m += end_m;
-      ++width;
-      next += side;
-    }
+    int& end = side < 0 ? first : last;
+    while (last - first < most_columns && IsNear(column, end + side - column, ring, range_m, step_m)) end += side;
+    const int next = end + side - column;
     // At the edge of the field of view the rest of a wall may be out of sight.
-    if (width > most_columns || !Adjoins(column, next)) return std::nullopt;
+    if (last - first >= most_columns || !Adjoins(column, next)) return std::nullopt;
     // Something nearer hides the rest.
     const double beside_m = RangeM(column + next, ring);
     if (beside_m > 0.0 && beside_m < range_m) return std::nullopt;
   }
-  const Vector3d face_m = sum_m / width;
-  const double radius_m = 0.5 * (ends_m[1] - ends_m[0]).norm();
+  const double radius_m = 0.5 * (last - first + 1) * column_m;
+  // Returns beyond the ends of the scan are of another time.
+  first = std::max(first, 0);
+  last = std::min(last, num_columns_ - 1);
+  Vector3d sum_m = Vector3d::Zero();
+  for (int i = first; i <= last; ++i) sum_m += PointAt(i, ring);
+  const Vector3d face_m = sum_m / (last - first + 1);
   const Vector3d outward = (face_m - T_vessel_lidar_.translation()).normalized();
   return face_m + (0.25 * std::numbers::pi * radius_m) * outward;
 }

@@ -46,7 +46,7 @@ enum class Shape {
   kRough     // foliage and the like
 };
 
-/// A return in the vessel frame at the time of its shot.
+/// A return in the vessel frame at the time of its shot; of a post: its centre.
 struct TimedPoint {
   Eigen::Vector3d p_vessel_m;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // vessel frame; of a surface: across it, of either sign

@@ -281,7 +281,7 @@ TEST(Odometer, AWallHasItsNormalAndAPostHasBothDirections) {
 TEST(Odometer, ARoundPostLiesAtItsCentreFromWhereverItIsSeen) {
   constexpr double kRadiusM = 0.2;
   constexpr int kCorners = 16;
-  for (const Eigen::Vector2d& centre_m : {Eigen::Vector2d(8.0, 0.0), {-8.0, 0.0}, {0.0, 8.0}, {0.0, -8.0}, {4.0, -3.0}}) {
+  for (const Eigen::Vector2d& centre_m : {Eigen::Vector2d(-8.0, 0.0), {0.0, 8.0}, {0.0, -8.0}, {4.0, -3.0}, {-15.0, 16.0}}) {
     const auto corner_m = [&](int i) {
       const double angle_rad = 2.0 * std::numbers::pi * i / kCorners;
       return Eigen::Vector2d(centre_m + kRadiusM * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad)));
@@ -292,9 +292,45 @@ TEST(Odometer, ARoundPostLiesAtItsCentreFromWhereverItIsSeen) {
     EXPECT_GT(points.size(), 2U);
     for (const auto& point : points) {
       EXPECT_EQ(point.shape, Shape::kPost);
-      EXPECT_LT((point.p_vessel_m.head<2>() - centre_m).norm(), 0.05) << point.p_vessel_m.transpose();
+      // Half a column: 0.4 deg here.
+      EXPECT_LT((point.p_vessel_m.head<2>() - centre_m).norm(), 0.03 + 0.0035 * centre_m.norm()) << point.p_vessel_m.transpose();
     }
   }
+}
+
+// As when two returns of a bush are neighbours and one lies deeper in it.
+TEST(Odometer, APostIsAsWideAsItsColumnsNotAsDeep) {
+  auto scan = MakeScan(0, {}, {});
+  const auto at = [&scan](std::size_t column, std::size_t ring, double range_m) {
+    scan.range[column * scan.rings.size() + ring] = static_cast<std::uint16_t>(range_m / scan.range_unit_m);
+  };
+  for (const std::size_t ring : {8U, 9U}) {
+    at(450, ring, 50.0);
+    at(451, ring, 51.1);
+  }
+  const auto points = StandingPoints(scan, 0.5, MadeParams().standing);
+  ASSERT_FALSE(points.empty());
+  for (const auto& point : points) {
+    EXPECT_EQ(point.shape, Shape::kPost);
+    EXPECT_NEAR(point.p_vessel_m.head<2>().norm(), 50.55 + 0.78 * 0.35, 0.1);
+  }
+}
+
+// A lidar that sees a post at both ends of its scan has come nearer in between: each end is a time of its own.
+TEST(Odometer, TheEndsOfAScanAreNotAveraged) {
+  std::vector<Wall> walls;
+  AddBox({20.0, 0.0}, 0.4, 0.4, Eigen::Vector2d::Zero(), walls);
+  constexpr double kSpeedMps = 5.0;
+  int num_first = 0;
+  int num_last = 0;
+  for (const auto& point : StandingPoints(MakeScan(0, walls, {kSpeedMps, 0.0}), 0.1, MadeParams().standing)) {
+    if (point.shape != Shape::kPost) continue;
+    const bool is_first = point.before_end_s > 0.05;
+    EXPECT_NEAR(point.p_vessel_m.x(), is_first ? 20.0 : 20.0 - kScanS * kSpeedMps, 0.1);
+    ++(is_first ? num_first : num_last);
+  }
+  EXPECT_GT(num_first, 0);
+  EXPECT_GT(num_last, 0);
 }
 
 TEST(LocalMap, TheNearestPointMayLieInAnotherCube) {
@@ -336,6 +372,13 @@ TEST(LocalMap, TheNearestPointIsThatOfASearchThroughAll) {
       }
     }
   }
+}
+
+TEST(LocalMap, NoNumberHasNoNearestPoint) {
+  LocalMap map;
+  map.Add({{0.0, 0.0, 0.0}, Eigen::Vector3d::Zero(), Shape::kPost});
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(map.Nearest({{0.0, 0.0, 0.0}, Eigen::Vector3d::Zero(), Shape::kPost}, none));
 }
 
 // The columns from `first` on alone, as of a sensor with a limited field of view.
