@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # lookout-archive with the real engines: the same 200 simulated and damaged logs by each of them give the same bytes; also where workers, engine, planner
-# and run are killed at drawn moments, the disk is full, a node is drained. Slurm's daemons run in namespaces of this test.
+# and run are killed at drawn moments, the disk is full, a node is drained, a slow mount goes away. Slurm's daemons run in namespaces of this test.
 #   archive_engines_test.sh SOURCE_FOLDER PROGRAM_FOLDER
 # LOOKOUT_ARCHIVE_LOGS, LOOKOUT_ARCHIVE_KILLS, LOOKOUT_SEED: how many logs (200) and kills (20), and the seed of the draw (1).
 set -uo pipefail
@@ -8,7 +8,7 @@ export LC_ALL=C
 source_folder=$1
 bin=$2
 if [ -z "${LOOKOUT_ARCHIVE_INSIDE:-}" ]; then
-  for program in slurmctld slurmd munged sbatch snakemake parallel; do
+  for program in slurmctld slurmd munged sbatch snakemake parallel bindfs; do
     command -v "$program" >/dev/null || { echo "skipped: $program is not installed (./dev setup slow)"; exit 77; }
   done
   [ "$(id -u)" -eq 0 ] || { echo 'skipped: Slurm in namespaces needs root'; exit 77; }
@@ -21,7 +21,7 @@ num_logs=${LOOKOUT_ARCHIVE_LOGS:-200}
 num_kills=${LOOKOUT_ARCHIVE_KILLS:-20}
 RANDOM=${LOOKOUT_SEED:-1}
 work=$(mktemp -d -t archive_engines.XXXXXX)
-trap 'umount "$work/full" 2>/dev/null; rm -rf "$work"' EXIT
+trap 'umount "$work/full" 2>/dev/null; umount -l "$work/mounted" 2>/dev/null; rm -rf "$work"' EXIT
 cd "$work" || exit 1
 num_failed=0
 fail() { echo "FAILED: $*" >&2; [ ! -e said ] || tail -20 said | sed 's/^/  | /' >&2; num_failed=$((num_failed + 1)); }
@@ -204,6 +204,27 @@ grep -qi 'no space left' said || fail 'a full disk is not told'
 mount -o remount,size=2g full
 finish full local
 [ "$(tree full)" = "$wanted" ] || fail 'after a full disk the tree is another one'
+
+step 'a slow mount, which holds logs and archive and goes away in mid-run'
+mkdir -p behind/logs mounted
+cp -a logs/. behind/logs/
+mount_slowly() { bindfs --read-rate=5M --write-rate=5M "$work/behind" "$work/mounted" || fail 'bindfs'; }
+mount_slowly
+archive --archive mounted/archive scan mounted/logs >said 2>&1 && archive --archive mounted/archive plan --config "$config" --name A >said 2>&1 || fail 'scan and plan'
+step 'scanned and planned'
+"$bin/lookout-archive" --archive mounted/archive run --jobs 2 --retries 0 >said 2>&1 &
+pid=$!
+sleep 10
+pkill -KILL --parent 1,$$ -f 'bindfs --read-rate=5M'  # the server of the mount dies: all that is open there fails from now on
+wait "$pid" && fail 'a mount that went away is not told by the exit code'
+umount -l mounted
+num_done=$(find behind/archive/results -name '*.json' | wc -l)
+[ "$num_done" -gt 0 ] || fail 'nothing was done before the mount went away'
+step "$num_done units were done before the mount went away"
+mount_slowly
+finish mounted/archive local
+[ "$(tree mounted/archive)" = "$wanted" ] || fail 'after a mount that went away the tree is another one'
+umount mounted
 
 step 'done'
 exit "$((num_failed > 0))"

@@ -38,6 +38,8 @@ mkdir -p "$odd"
 cp logs/dense-101.pcap "$odd/it's \"one\".pcap"
 head -c 700000 logs/dense-102.lcmlog >logs/torn-1.lcmlog
 echo 'notes' >logs/notes.txt
+mkdir logs/many
+for i in 1 2 3 4; do echo 'more notes' >"logs/many/$i.txt"; done
 head -c 5000 /dev/urandom >logs/junk.bin
 : >logs/empty.lcmlog
 mkdir logs/loop
@@ -66,7 +68,7 @@ expect_code 1 plan --config "$config"
 says 'no archive here'
 expect_code 2 scan nowhere
 expect_code 0 scan logs
-for text in 'foreign    '"$work/logs/notes.txt" 'junk.bin' 'empty.lcmlog' 'is of other wire types than this version' 'damaged    '"$work/logs/torn-1" ' 6 runs'; do
+for text in 'foreign    '"$work/logs/notes.txt" 'foreign    4 files of '"$work/logs/many/ (1.txt, 2.txt, ...): is text" 'junk.bin' 'empty.lcmlog' 'is of other wire types than this version' 'damaged    '"$work/logs/torn-1" ' 6 runs'; do
   [ "$text" = ' 6 runs' ] && { grep -q '^6 runs' said || fail 'not 6 runs'; continue; }
   says "$text"
 done

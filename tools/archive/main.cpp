@@ -13,7 +13,6 @@
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
 #include "common/io/stop_signal.hpp"
-#include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/archive/compare.hpp"
 #include "tools/archive/plan.hpp"
@@ -57,7 +56,7 @@ void AddScan(CLI::App& app, Requests& requests, std::map<CLI::App*, Command>& co
       ->required()
       ->check(CLI::ExistingDirectory);
   commands[scan] = [&requests](const archive::ArchiveFolder& folder) {
-    requests.scan.progress = lookout::runtime::OnlyTerminal(stderr);
+    requests.scan.progress = stderr;
     archive::Scan(folder, requests.scan, std::cout);
     return EXIT_SUCCESS;
   };
@@ -111,7 +110,7 @@ void AddRun(CLI::App& app, Requests& requests, std::map<CLI::App*, Command>& com
       std::cout << archive::EngineText(request.engine);
       return EXIT_SUCCESS;
     }
-    request.progress = lookout::runtime::OnlyTerminal(stderr);
+    request.progress = stderr;
     const auto summary = archive::RunUnits(folder, request, std::cout);
     return summary.num_failed + summary.num_not_done == 0 ? EXIT_SUCCESS : kExitFailed;
   };

@@ -10,6 +10,8 @@
 #include <ostream>
 #include <set>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "common/core/printable.hpp"
 #include "common/io/file_lock.hpp"
@@ -214,19 +216,49 @@ void WriteRuns(Database& index, std::map<std::string, KnownFile>& known) {
   for (const auto& run : runs) writer.Write(files, run, runs_of_folder[files[run.front()].path.parent_path()] == 1);
 }
 
-void Tell(Database& index, const Walk& walk, const ScanCounts& counts, std::ostream& out) {
+// Files of one folder that have the same state and reason.
+struct Unused {
+  std::string state;
+  std::string folder;
+  std::string reason;
+  std::vector<std::string> names;
+};
+
+// A folder may hold thousands of files that are no recordings: a line for each reason, which names the first ones. The index has them all.
+void TellUnused(Database& index, std::ostream& out) {
+  std::vector<Unused> groups;
   auto rows = index.Prepare("SELECT path, state, reason FROM file WHERE state != 'sound' AND kind != 'truth' ORDER BY path");
-  while (rows.Step()) out << fmt::format("{:<10} {}: {}\n", rows.Text(1), rows.Text(0), rows.Text(2));
+  std::map<std::tuple<std::string, std::string, std::string>, std::size_t> places;
+  while (rows.Step()) {
+    const auto path = rows.Text(0);
+    const auto name_begin = path.rfind('/') + 1;
+    const auto folder = path.substr(0, name_begin);
+    const auto [place, is_new] = places.try_emplace({folder, rows.Text(1), rows.Text(2)}, groups.size());
+    if (is_new) groups.push_back({rows.Text(1), folder, rows.Text(2), {}});
+    groups[place->second].names.push_back(path.substr(name_begin));
+  }
+  constexpr std::size_t kMostLines = 3;
+  for (const auto& group : groups) {
+    if (group.names.size() <= kMostLines) {
+      for (const auto& name : group.names) out << fmt::format("{:<10} {}{}: {}\n", group.state, group.folder, name, group.reason);
+    } else {
+      out << fmt::format("{:<10} {} files of {} ({}, {}, ...): {}\n", group.state, group.names.size(), group.folder, group.names[0], group.names[1],
+                         group.reason);
+    }
+  }
+}
+
+void Tell(Database& index, const Walk& walk, const ScanCounts& counts, std::ostream& out) {
+  TellUnused(index, out);
   for (const auto& [folder, why] : walk.faults) out << fmt::format("{:<10} {}: {}\n", "unreadable", PathText(folder), PrintableLines(why));
   out << fmt::format("{} files: {} read, {} as before, {} gone\n", counts.num_read + counts.num_known, counts.num_read, counts.num_known,
                      counts.num_gone);
   constexpr double kBytesPerGb = 1e9;
   constexpr double kUsPerHour = 3.6e9;
-  auto sum = index.Prepare("SELECT count(*), total(size_bytes), total(end_us - start_us), sum(truth != '') FROM run");
-  if (sum.Step()) {
-    out << fmt::format("{} runs, {:.3f} GB, {:.2f} h of logs, {} with truth\n", sum.Int(0), sum.Double(1) / kBytesPerGb, sum.Double(2) / kUsPerHour,
-                       sum.Int(3));
-  }
+  auto sum = index.Prepare("SELECT count(*), total(size_bytes), sum(kind = 'lcm-log'), total(end_us - start_us), sum(truth != '') FROM run");
+  if (!sum.Step()) return;
+  out << fmt::format("{} runs, {:.3f} GB, {} with truth; {} of them lcm-logs, of {:.2f} h\n", sum.Int(0), sum.Double(1) / kBytesPerGb, sum.Int(4),
+                     sum.Int(2), sum.Double(3) / kUsPerHour);
 }
 
 }  // namespace
