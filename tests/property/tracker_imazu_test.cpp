@@ -114,6 +114,7 @@ std::vector<Outcome> Simulate(const Courses& courses, std::uint64_t seed) {
       if (distance_m < kLimits.limit_m) outcomes[i].last_inside_s = time_s;
       const Moving other{Boat(4.0, 1.6, position + error.head<2>(), course_rad), velocity + error.tail<2>()};
       Track track;
+      track.existence_probability = 1.0;
       track.id = static_cast<std::int64_t>(i) + 1;
       track.status = TrackStatus::kConfirmed;
       track.velocity_mps = other.velocity_mps;

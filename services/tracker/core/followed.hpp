@@ -56,7 +56,7 @@ struct Followed {
   int num_moving = 0;                                 // scans in which it moved for sure
   Eigen::Vector2d first_m = Eigen::Vector2d::Zero();  // middle, when it was seen first
   std::optional<Watched> watched;                     // the water in which it came up, before it did; nullopt: nobody has asked
-  Watched way;                                        // of a moving thing: its foremost place, before it can have come there
+  bool is_on_ground = false;                          // it moves, and is seen where something stood before
   double watched_top_m = 0.0;                         // with which it was asked
   int num_misfits = 0;                                // scans in a row whose outline was another
   std::deque<bool> looks;

@@ -43,7 +43,7 @@ struct Track {
   std::vector<std::int32_t> segment_ids;
   std::vector<std::int64_t> parents;
   std::vector<std::int64_t> children;
-  Watched way;  // of a moving one: its foremost place, before it can have come there
+  bool is_on_ground = false;  // it moves, and is seen where something stood before
   int num_seen = 0;
   int num_looks = 0;
   double mean_returns = 0.0;

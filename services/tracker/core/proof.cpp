@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "services/tracker/core/beside.hpp"
-#include "services/tracker/core/watched_water.hpp"
 
 namespace lookout::tracker {
 
@@ -27,7 +26,7 @@ bool IsBesideWhatStands(const Track& track, std::span<const Track> tracks, std::
 
 Proof::Course Proof::CourseOf(const Track& track, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
   const bool is_beside = IsBesideWhatStands(track, tracks, shore_m, kBesideM);
-  return {track.seen, track.position_m, track.seen, track.position_m, is_beside, !is_beside, false};
+  return {track.seen, track.position_m, track.seen, track.seen, track.position_m, is_beside, !is_beside, false};
 }
 
 void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
@@ -45,9 +44,11 @@ void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2
     if (is_new) course = CourseOf(track, tracks, shore_m);
     const bool is_seen = track.seen != course.seen;
     course.seen = track.seen;
-    if (course.is_proven || !is_seen) continue;  // where it is not seen its place is a guess
-    if (WasThere(track.way)) {
-      course = {track.seen, track.position_m, track.seen, track.position_m, course.is_beside, false, false};
+    if (!is_seen) continue;  // its place is a guess
+    if (is_new || !track.is_on_ground) course.off_ground = track.seen;
+    if (course.is_proven && ToSeconds(track.seen - course.off_ground) < kOnGroundS) continue;
+    if (track.is_on_ground) {
+      course = {track.seen, track.position_m, track.seen, course.off_ground, track.position_m, course.is_beside, false, false};
       continue;
     }
     const double speed_mps = track.velocity_mps.norm();

@@ -20,8 +20,8 @@ namespace lookout::tracker {
 /// moves, now one end of it is seen and now the other. It is proven, slow or fast, when it has besides gone kLeavesM and is off by kTouchM, or has
 /// gone kPassesM; it may be acted on before that, but not before it has gone kLeavesM.
 ///
-/// A boat comes to water that was empty. A track that comes to where beams met something before it can have been there (Track::way) is a piece of
-/// what stands, and its way begins anew; what is proven stays so.
+/// A boat comes to water that was empty. A track that comes to where something stood before it can have been there (Track::is_on_ground) is a piece
+/// of that, and its way begins anew; what is proven stays so for kOnGroundS, as it passes a buoy.
 class Proof {
  public:
   static constexpr double kLeastS = 1.0;
@@ -38,6 +38,7 @@ class Proof {
   /// More than the parts of small craft are apart.
   static constexpr double kLeavesM = 3.0;
   static constexpr double kPassesM = 10.0;
+  static constexpr double kOnGroundS = 0.5;
 
   /// One scan. Call Rename of that scan before.
   /// @param shore_m  remembered land with water before it, on the map
@@ -60,6 +61,7 @@ class Proof {
     Utime begin;  // of the way by which it shows itself
     Eigen::Vector2d begin_m = Eigen::Vector2d::Zero();
     Utime seen;                                          // moving, last
+    Utime off_ground;                                    // the same, where nothing stood before
     Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  // where it was seen to move first
     bool is_beside = false;                              // it began so
     bool has_left = false;                               // or it did not begin beside anything

@@ -93,7 +93,7 @@ std::optional<Track> PublishedOf(const ScanInput& scan, const TrackerParams& par
   }
   for (const auto& [id, since] : track.parents) out.parents.push_back(id);
   for (const auto& [id, since] : track.children) out.children.push_back(id);
-  if (is_moving) out.way = track.way;
+  out.is_on_ground = is_moving && track.is_on_ground;
   out.num_looks = static_cast<int>(track.looks.size());
   out.num_seen = static_cast<int>(std::ranges::count(track.looks, true));
   out.mean_returns = track.sum_returns / std::max(1, track.num_hits);

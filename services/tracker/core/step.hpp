@@ -15,6 +15,7 @@
 #include "services/tracker/core/land_pieces.hpp"
 #include "services/tracker/core/sight.hpp"
 #include "services/tracker/core/sightings.hpp"
+#include "services/tracker/core/standing_ground.hpp"
 #include "services/tracker/core/tracker.hpp"
 #include "services/tracker/core/watched_water.hpp"
 
@@ -37,6 +38,7 @@ struct Known {
   LandPieces land_pieces = {};
   ClutterMap clutter = {};
   WatchedWater watched = {};
+  StandingGround ground = {};
   std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
@@ -96,9 +98,9 @@ class Step {
   bool IsClear(std::size_t i) const;
   bool IsAlone(const Followed& track, std::size_t i) const;
   void AskWatched(Followed& track) const;
-  void LookAtWays();
-  Eigen::Vector2d ForemostOf(const Followed& track, const Eigen::Vector2d& ahead) const;
-  static bool HasGoneBefore(const Followed& leader, const Eigen::Vector2d& place_m);
+  void RememberGround();
+  void LookAtGround();
+  bool IsOnGround(const Followed& track) const;
   void Begin();
   void ConfirmWhereLikely(Followed& track, std::size_t i);
   void Confirm(Followed& track);

@@ -57,68 +57,48 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
   Place(track);
 }
 
-// What moves comes to places that were empty. A piece of a quay that is taken for the whole, now this piece and now that, seems to move to places
-// where the quay was before.
-void Step::LookAtWays() {
-  constexpr double kWayM = 1.0;  // ago: farther off than returns that count for the place
-  constexpr double kSlowestMps = 0.1;
-  for (auto& track : known_.tracks) track.way = {};
-  if (!is_sight_known_ || params_.without.watched_water) return;
-  std::vector<const Followed*> leaders;
-  std::vector<std::pair<Followed*, Eigen::Vector2d>> doubted;  // and their foremost places
+// The returns of all that is not known to move. A drop is one return.
+void Step::RememberGround() {
+  constexpr std::size_t kLeastReturns = 2;
+  known_.ground.Begin(scan_.end_time);
+  std::vector<std::uint8_t> moves(sightings_.size(), 0);
+  for (const auto& track : known_.tracks) {
+    if (track.is_seen_now && track.frame != 0) moves[track.sighting] = 1;
+  }
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    if (moves[i] == 0 && sightings_[i].places_m.size() >= kLeastReturns) known_.ground.Add(sightings_[i].places_m);
+  }
+}
+
+void Step::LookAtGround() {
   for (auto& track : known_.tracks) {
-    if (track.outline_m.empty() || !track.body || !track.body->IsMoving(params_.moving_probability)) continue;
-    if (!track.is_seen_now) {  // hidden by its tow, or missed
-      if (track.is_confirmed) leaders.push_back(&track);
-      continue;
-    }
-    const Eigen::Vector2d velocity_mps = track.body->velocity_mps();
-    const double speed_mps = std::max(velocity_mps.norm(), kSlowestMps);
-    const Eigen::Vector2d place_m = ForemostOf(track, velocity_mps / speed_mps);
-    const std::chrono::duration<double> way_s(kWayM / speed_mps);
-    track.way = known_.watched.OfWay(place_m, track.top_m, scan_.end_time - std::chrono::duration_cast<std::chrono::microseconds>(way_s));
-    if (WasThere(track.way)) {
-      doubted.emplace_back(&track, place_m);
-    } else if (track.is_confirmed) {
-      leaders.push_back(&track);
-    }
-  }
-  // Where a boat was that leads or tows, its follower comes to; and others behind that. Two pieces of a quay do not excuse each other.
-  for (std::size_t i = 0; i < leaders.size(); ++i) {
-    std::erase_if(doubted, [&](const auto& follower) {
-      auto* const track = follower.first;
-      if (!HasGoneBefore(*leaders[i], follower.second)) return false;
-      track->way = {};
-      if (track->is_confirmed) leaders.push_back(track);
-      return true;
-    });
+    const bool moves = track.body && track.is_seen_now && track.body->IsMoving(params_.moving_probability);
+    track.is_on_ground = moves && IsOnGround(track);
   }
 }
 
-// Of the corners that lead the nearest to the lidar: the far side is assumed, and what stands behind it is near.
-Eigen::Vector2d Step::ForemostOf(const Followed& track, const Eigen::Vector2d& ahead) const {
-  constexpr double kLeadsM = 0.5;
-  double most_m = -std::numeric_limits<double>::infinity();
-  for (const auto& corner : track.outline_m) most_m = std::max(most_m, corner.dot(ahead));
-  const Eigen::Vector2d own_m = scan_.own->position_map_m.head<2>();
-  Eigen::Vector2d foremost_m = track.middle_m;
-  double least_m = std::numeric_limits<double>::infinity();
-  for (const auto& corner : track.outline_m) {
-    const double range_m = (corner - own_m).norm();
-    if (corner.dot(ahead) < most_m - kLeadsM || range_m >= least_m) continue;
-    least_m = range_m;
-    foremost_m = corner;
+// What moves comes to places that were empty. Whether most of the returns that lead lie where something stood, before the thing can have come there:
+// then it is a piece of a quay that is taken for the whole, now this piece and now that, or it went over to what stands.
+bool Step::IsOnGround(const Followed& track) const {
+  constexpr double kWayM = 1.0;    // ago: farther off than cells that count for a place
+  constexpr double kLeadsM = 0.5;  // behind the foremost return
+  constexpr double kSlowestMps = 0.1;
+  constexpr int kStandsFor = 3;  // half seconds: a crest passes
+  const Eigen::Vector2d velocity_mps = track.body->velocity_mps();
+  const double speed_mps = std::max(velocity_mps.norm(), kSlowestMps);
+  const std::chrono::duration<double> way_s(kWayM / speed_mps);
+  const auto before = scan_.end_time - std::chrono::duration_cast<std::chrono::microseconds>(way_s);
+  const auto& places_m = sightings_[track.sighting].places_m;
+  double foremost_m = -std::numeric_limits<double>::infinity();
+  for (const auto& place_m : places_m) foremost_m = std::max(foremost_m, place_m.dot(velocity_mps) / speed_mps);
+  int num_leading = 0;
+  int num_on_ground = 0;
+  for (const auto& place_m : places_m) {
+    if (place_m.dot(velocity_mps) / speed_mps < foremost_m - kLeadsM) continue;
+    ++num_leading;
+    if (known_.ground.TimesMet(place_m, before) >= kStandsFor) ++num_on_ground;
   }
-  return foremost_m;
-}
-
-// Whether it was at the place in the last seconds.
-bool Step::HasGoneBefore(const Followed& leader, const Eigen::Vector2d& place_m) {
-  constexpr double kOfWakeM = 1.0;
-  const Eigen::Vector2d back_m = -WatchedWater::kKeptS * leader.body->velocity_mps();
-  const Eigen::Vector2d off_m = place_m - leader.middle_m;
-  const double share = std::clamp(off_m.dot(back_m) / std::max(back_m.squaredNorm(), 0.01), 0.0, 1.0);
-  return (off_m - share * back_m).norm() < leader.radius_m + kOfWakeM;
+  return 2 * num_on_ground > num_leading;
 }
 
 // A moving thing is remembered in a frame of its own, until it has stood for a while.

@@ -69,7 +69,10 @@ void Step::Settle() {
   const bool is_sure = best.first >= kLeast && 2 * static_cast<std::size_t>(best.first) >= from_m.size();
   const Eigen::Vector2d shift_m = is_sure ? best.second : Eigen::Vector2d::Zero();
   if (shift_m.norm() > kFarM) known_.land_pieces.Clear();
-  if (!is_sure || shift_m.norm() > kSameM) known_.ledger.Clear();  // its places were elsewhere
+  if (!is_sure || shift_m.norm() > kSameM) {  // its places were elsewhere
+    known_.ledger.Clear();
+    known_.ground.Clear();
+  }
   for (auto& track : known_.tracks) {
     track.seen_m += shift_m;
     track.first_m += shift_m;

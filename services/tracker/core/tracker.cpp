@@ -64,6 +64,7 @@ void Tracker::Reset() {
   memory_->known.land_pieces.Clear();
   memory_->known.clutter = {};
   memory_->known.watched.Clear();
+  memory_->known.ground.Clear();
   memory_->time.reset();
   memory_->own.reset();
   memory_->turn.Reset();

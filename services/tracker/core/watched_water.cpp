@@ -12,6 +12,7 @@ namespace lookout::tracker {
 
 namespace {
 
+constexpr double kBesidePlaceM = 1.0;    // of the place: a return nearer than this may be the thing
 constexpr double kOverWaterM = 0.1;      // lower beams may meet the water
 constexpr double kLostPacketRad = 0.01;  // to the next column
 constexpr double kCentimetres = 100.0;
@@ -23,11 +24,6 @@ constexpr double kMostCameUp = 5.0;
 }  // namespace
 
 double CameUpLogOdds(const Watched& watched, double seen_share) { return std::min(kMostCameUp, -watched.num_empty * Log(1.0 - seen_share)); }
-
-bool WasThere(const Watched& watched) {
-  constexpr int kLeastLooks = 3;
-  return watched.num_looks >= kLeastLooks && 3 * (watched.num_looks - watched.num_empty) > watched.num_looks;
-}
 
 void WatchedWater::Add(const Sight& sight, Utime time) {
   while (!scans_.empty() && ToSeconds(time - scans_.front().time) > kKeptS) scans_.pop_front();
@@ -42,8 +38,7 @@ void WatchedWater::Add(const Sight& sight, Utime time) {
   scans_.push_back(std::move(scan));
 }
 
-WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, const Asked& asked) {
-  const double beside_m = asked.beside_m;
+WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m) {
   const int num_columns = static_cast<int>(scan.unwrapped_rad.size());
   const auto column_at = [&scan](double azimuth_rad) {
     const double first_rad = scan.unwrapped_rad.front();
@@ -68,7 +63,7 @@ WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d&
   column = std::min(column_at(azimuth_rad), num_columns - 1);
   if (std::fabs(WrapToPi(azimuth_rad - scan.unwrapped_rad[static_cast<std::size_t>(column)])) > kLostPacketRad) return Look::kNone;
   const double distance_m = (place_m - pose.translation().head<2>()).norm();
-  if (distance_m > scan.max_range_m || distance_m <= beside_m) return Look::kNone;
+  if (distance_m > scan.max_range_m || distance_m <= kBesidePlaceM) return Look::kNone;
 
   const auto [sine, cosine] = SinCosOf(azimuth_rad);
   const std::size_t num_rings = scan.ring.size();
@@ -78,37 +73,32 @@ WatchedWater::Look WatchedWater::LookAt(const Scan& scan, const Eigen::Vector2d&
   bool is_looked = false;
   std::vector<std::uint16_t> from_cm(num_rings);
   std::vector<std::uint16_t> width_cm(num_rings);
-  std::vector<std::uint8_t> is_asked(num_rings);
   for (std::size_t ring = 0; ring < num_rings; ++ring) {
     const auto& elevation = scan.ring[ring];
     const Eigen::Vector3d direction = pose.linear() * Eigen::Vector3d(elevation.x() * cosine, -elevation.x() * sine, elevation.y());
     const double flat = Hypot(direction.x(), direction.y());
     const double z = pose.translation().z() + distance_m * direction.z() / flat;
     const double range_m = flat / kCentimetres * column_ranges(column)[ring];
-    const bool is_between = z > kOverWaterM && z < top_m;
-    if (is_between && (range_m == 0.0 || range_m >= distance_m - beside_m)) is_looked = true;
-    from_cm[ring] = static_cast<std::uint16_t>(std::clamp(kCentimetres * (distance_m - beside_m) / flat, 1.0, kMostCm));
-    width_cm[ring] = static_cast<std::uint16_t>(std::min(kCentimetres * (distance_m + beside_m) / flat, kMostCm) - from_cm[ring]);
-    is_asked[ring] = is_between || !asked.is_by_height;
+    if (z > kOverWaterM && z < top_m && (range_m == 0.0 || range_m >= distance_m - kBesidePlaceM)) is_looked = true;
+    from_cm[ring] = static_cast<std::uint16_t>(std::clamp(kCentimetres * (distance_m - kBesidePlaceM) / flat, 1.0, kMostCm));
+    width_cm[ring] = static_cast<std::uint16_t>(std::min(kCentimetres * (distance_m + kBesidePlaceM) / flat, kMostCm) - from_cm[ring]);
   }
-  const int beside = static_cast<int>(beside_m / distance_m / kTwoPi * num_columns);
-  int num_met = 0;
+  const int beside = static_cast<int>(kBesidePlaceM / distance_m / kTwoPi * num_columns);
   for (int i = -beside; i <= beside; ++i) {
     const auto ranges_cm = column_ranges((column + i + num_columns) % num_columns);
-    for (std::size_t ring = 0; ring < num_rings; ++ring) {
-      num_met += is_asked[ring] & static_cast<int>(static_cast<std::uint16_t>(ranges_cm[ring] - from_cm[ring]) <= width_cm[ring]);
-    }
-    if (num_met >= asked.least_returns) return Look::kMet;
+    bool is_met = false;
+    for (std::size_t ring = 0; ring < num_rings; ++ring) is_met |= static_cast<std::uint16_t>(ranges_cm[ring] - from_cm[ring]) <= width_cm[ring];
+    if (is_met) return Look::kMet;
   }
   return is_looked ? Look::kEmpty : Look::kNone;
 }
 
-Watched WatchedWater::At(const Eigen::Vector2d& place_m, double top_m, Utime before, const Asked& asked) const {
+Watched WatchedWater::At(const Eigen::Vector2d& place_m, double top_m, Utime before) const {
   Watched watched;
   for (const auto& scan : scans_) {
     const double before_s = ToSeconds(before - scan.time);
     if (before_s <= 0.0 || before_s > kWatchedS) continue;
-    const auto look = LookAt(scan, place_m, top_m, asked);
+    const auto look = LookAt(scan, place_m, top_m);
     if (look != Look::kNone) ++watched.num_looks;
     if (look == Look::kEmpty) ++watched.num_empty;
   }

@@ -23,9 +23,6 @@ struct Watched {
 /// @param seen_share  of scans in which it is seen, of those in which it could be
 double CameUpLogOdds(const Watched& watched, double seen_share);
 
-/// Whether something was met at the place in more than a third of the looks, of three or more.
-bool WasThere(const Watched& watched);
-
 /// The beams of the last scans, as little of them as this question needs: 2 bytes a shot. A VLP-16 has 300 000 shots a second, so 1.9 MB.
 class WatchedWater {
  public:
@@ -37,10 +34,7 @@ class WatchedWater {
   void Add(const Sight& sight, Utime time);
   /// @param top_m   of the thing, above the water
   /// @param before  end of the scan in which it was seen first: those of the 2 s before it count
-  Watched At(const Eigen::Vector2d& place_m, double top_m, Utime before) const { return At(place_m, top_m, before, kComesUp); }
-  /// The same of a place to which a thing came: it was not empty only where two returns or more, neither lower nor higher than the thing, were nearer
-  /// than 0.5 m. A drop is one, and water and what hangs over the place say nothing.
-  Watched OfWay(const Eigen::Vector2d& place_m, double top_m, Utime before) const { return At(place_m, top_m, before, kComesTo); }
+  Watched At(const Eigen::Vector2d& place_m, double top_m, Utime before) const;
   void Clear() { scans_.clear(); }
 
  private:
@@ -54,16 +48,7 @@ class WatchedWater {
     std::vector<std::uint16_t> range_cm = {};  // [columns x rings] 0: nothing was met
   };
   enum class Look { kNone, kEmpty, kMet };
-  // What counts as met.
-  struct Asked {
-    double beside_m;  // of the place: a return nearer than this may be the thing
-    int least_returns;
-    bool is_by_height;  // only between the water and the top of the thing
-  };
-  static constexpr Asked kComesUp{1.0, 1, false};
-  static constexpr Asked kComesTo{0.5, 2, true};
-  Watched At(const Eigen::Vector2d& place_m, double top_m, Utime before, const Asked& asked) const;
-  static Look LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m, const Asked& asked);
+  static Look LookAt(const Scan& scan, const Eigen::Vector2d& place_m, double top_m);
 
   std::deque<Scan> scans_;
 };

@@ -25,6 +25,7 @@ Track At(std::int64_t id, const Eigen::Vector2d& from_own_m, TrackStatus status 
   Track track;
   track.id = id;
   track.status = status;
+  track.existence_probability = 1.0;
   const Eigen::Vector2d center = Eigen::Vector2d(100.0, 50.0) + from_own_m;
   track.outline_m = {center + Eigen::Vector2d(-0.5, -0.5), center + Eigen::Vector2d(0.5, -0.5), center + Eigen::Vector2d(0.5, 0.5),
                      center + Eigen::Vector2d(-0.5, 0.5)};
@@ -363,6 +364,18 @@ TEST(ClosestApproachDangers, OfAPieceOfTheBerthAreNoneForABoatThatLiesStill) {
     for (int scan = 1; scan < 12; ++scan) told(scan);
     EXPECT_EQ(told(12).probability, 0.9) << "it has left";
   }
+}
+
+// Beams that find nothing where it would be by now say that it is elsewhere. What stands is told all the same: waves may hide it.
+TEST(ClosestApproachDangers, OfWhatMovesAreAsLikelyAsItIsThere) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 20.0}), At(2, {5.0, 20.0})};
+  picture.tracks[0].velocity_mps = {0.0, -1.0};
+  for (auto& track : picture.tracks) track.existence_probability = 0.25;
+  const auto dangers = ClosestApproachDangers(kApproach, picture, Own(), false);
+  ASSERT_EQ(dangers.size(), 2U);
+  EXPECT_DOUBLE_EQ(dangers[0].probability, 0.2);
+  EXPECT_DOUBLE_EQ(dangers[1].probability, 0.8);
 }
 
 // A crest runs; what stands there all the same is told as it was.

@@ -34,7 +34,7 @@ class ProofTest : public ::testing::Test {
       boat_ = BoxAt(1, 0.0, north_m_, {0.0, speed_mps});
       seen_ = is_seen ? time_ : seen_;
       boat_.seen = seen_;
-      boat_.way = way_;
+      boat_.is_on_ground = is_on_ground_;
       auto tracks = standing_;
       tracks.push_back(boat_);
       proof_.Update(tracks, shore_m_);
@@ -46,7 +46,7 @@ class ProofTest : public ::testing::Test {
   Utime seen_ = kBegin;
   double north_m_ = 0.0;
   Track boat_;
-  Watched way_;
+  bool is_on_ground_ = false;
   std::vector<Track> standing_;
   std::vector<Eigen::Vector2d> shore_m_;
 };
@@ -130,12 +130,12 @@ TEST_F(ProofTest, WhatGoesAlongAQuayIsProvenFartherOn) {
 }
 
 // As a piece of a quay that is taken for the whole, now this and now that, in the middle of nothing else that is known.
-TEST_F(ProofTest, WhatComesToWhereSomethingWasIsAPiece) {
-  way_ = {10, 6};
+TEST_F(ProofTest, WhatComesToWhereSomethingStoodIsAPiece) {
+  is_on_ground_ = true;
   Run(10.0, 4.0);
   EXPECT_FALSE(proof_.IsProven(boat_));
   EXPECT_TRUE(proof_.MayBePiece(1));
-  way_ = {10, 10};
+  is_on_ground_ = false;
   Run(0.7, 4.0);
   EXPECT_TRUE(proof_.MayBePiece(1)) << "its way counts from here on";
   Run(0.6, 4.0);
@@ -149,7 +149,7 @@ TEST_F(ProofTest, OfTwoTracksThatAreOneEitherProvesIt) {
     for (int i = 0; i <= 15; ++i) {
       auto bow = BoxAt(is_first ? 1 : 2, 0.0, 0.4 * i, {0.0, 4.0});
       auto stern = BoxAt(is_first ? 2 : 1, 0.0, 0.4 * i - 2.0, {0.0, 4.0});
-      stern.way = {10, 0};
+      stern.is_on_ground = true;
       bow.seen = stern.seen = kBegin + milliseconds(100 * i);
       proof_.Update(is_first ? std::vector{bow, stern} : std::vector{stern, bow});
     }
@@ -158,17 +158,21 @@ TEST_F(ProofTest, OfTwoTracksThatAreOneEitherProvesIt) {
   }
 }
 
-TEST_F(ProofTest, OfAWayThatWasHardlyLookedAtNothingIsKnown) {
-  way_ = {2, 0};
+TEST_F(ProofTest, ACourseThatIsProvenStaysSoBesideABuoyAndNotAlongAQuay) {
+  Run(1.3, 4.0);
+  is_on_ground_ = true;
+  Run(0.4, 4.0);
+  EXPECT_TRUE(proof_.IsProven(boat_)) << "it passes a buoy";
+  is_on_ground_ = false;
+  Run(0.1, 4.0);
+  is_on_ground_ = true;
+  Run(0.4, 4.0);
+  EXPECT_TRUE(proof_.IsProven(boat_)) << "and another";
+  Run(0.2, 4.0);
+  EXPECT_FALSE(proof_.IsProven(boat_)) << "it goes from one thing that stands to the next";
+  is_on_ground_ = false;
   Run(1.3, 4.0);
   EXPECT_TRUE(proof_.IsProven(boat_));
-}
-
-TEST_F(ProofTest, ACourseThatIsProvenStaysSo) {
-  Run(1.3, 4.0);
-  way_ = {10, 0};
-  Run(3.0, 4.0);
-  EXPECT_TRUE(proof_.IsProven(boat_)) << "it comes to a quay";
 }
 
 }  // namespace

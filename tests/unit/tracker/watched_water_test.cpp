@@ -154,24 +154,6 @@ TEST(WatchedWater, WasNotEmptyBesideSomething) {
   EXPECT_EQ(memory.At({0.0, 10.0}, 0.5).num_empty, 10);
 }
 
-TEST(WatchedWater, OfAWayIsEmptyHalfAMetreBesideSomething) {
-  Memory memory;
-  memory.Scans(30, {{.place_m = {0.0, 10.0}}});
-  const auto of_way = [&memory](double east_m) { return memory.water.OfWay({east_m, 10.0}, 0.4, memory.now()); };
-  EXPECT_EQ(of_way(0.7).num_empty, 0);
-  EXPECT_GT(of_way(1.1).num_looks, 0);
-  EXPECT_EQ(of_way(1.1).num_empty, of_way(1.1).num_looks) << "0.7 m off";
-}
-
-// A bridge over a kayak, and drops.
-TEST(WatchedWater, OfAWayIsEmptyBelowWhatIsHigherAndWithSingleReturns) {
-  Memory memory;
-  memory.Scans(30, {{.place_m = {0.0, 10.0}, .top_m = 4.0, .radius_m = 0.3, .share = 0.01}});
-  const auto way = memory.water.OfWay({0.0, 10.0}, 0.6, memory.now());
-  EXPECT_GT(way.num_looks, 10);
-  EXPECT_GT(3 * way.num_empty, 2 * way.num_looks);
-}
-
 TEST(WatchedWater, IsForgotten) {
   Memory memory;
   memory.Scans(30, {});
