@@ -26,11 +26,12 @@ bool IsBesideWhatStands(const Track& track, std::span<const Track> tracks, std::
 
 Proof::Course Proof::CourseOf(const Track& track, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
   const bool is_beside = IsBesideWhatStands(track, tracks, shore_m, kBesideM);
-  return {track.seen, track.position_m, track.seen, track.seen, track.position_m, is_beside, !is_beside, false};
+  return {track.seen, track.position_m, track.seen, 0.0, track.position_m, is_beside, !is_beside, false, false};
 }
 
 void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m) {
   constexpr double kShareOfWay = 0.5;
+  constexpr double kMostStepS = 0.2;  // a longer one is a pause
   std::set<std::int64_t> ids;
   for (const auto& track : tracks) {
     if (track.velocity_mps.isZero(0.0)) {
@@ -43,12 +44,15 @@ void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2
     auto& course = known->second;
     if (is_new) course = CourseOf(track, tracks, shore_m);
     const bool is_seen = track.seen != course.seen;
+    const double step_s = ToSeconds(track.seen - course.seen);
     course.seen = track.seen;
     if (!is_seen) continue;  // its place is a guess
-    if (is_new || !track.is_on_ground) course.off_ground = track.seen;
-    if (course.is_proven && ToSeconds(track.seen - course.off_ground) < kOnGroundS) continue;
+    course.on_ground_s = track.is_on_ground ? course.on_ground_s + std::min(step_s, kMostStepS) : 0.0;
+    if (course.is_proven && course.on_ground_s < kOnGroundS) continue;
     if (track.is_on_ground) {
-      course = {track.seen, track.position_m, track.seen, course.off_ground, track.position_m, course.is_beside, false, false};
+      // What was proven is doubted, but is no piece.
+      const bool was_proven = course.is_proven || course.was_proven;
+      course = {track.seen, track.position_m, track.seen, course.on_ground_s, track.position_m, course.is_beside, was_proven, was_proven, false};
       continue;
     }
     const double speed_mps = track.velocity_mps.norm();
@@ -82,6 +86,8 @@ void Proof::Rename(std::int64_t from_track, std::int64_t to_track) {
   auto& course = put.position->second;
   course.has_left = course.has_left || put.node.mapped().has_left;
   course.is_proven = course.is_proven || put.node.mapped().is_proven;
+  course.was_proven = course.was_proven || put.node.mapped().was_proven;
+  course.on_ground_s = std::min(course.on_ground_s, put.node.mapped().on_ground_s);
 }
 
 bool Proof::IsProven(const Track& track) const {

@@ -21,7 +21,7 @@ namespace lookout::tracker {
 /// gone kPassesM; it may be acted on before that, but not before it has gone kLeavesM.
 ///
 /// A boat comes to water that was empty. A track that comes to where something stood before it can have been there (Track::is_on_ground) is a piece
-/// of that, and its way begins anew; what is proven stays so for kOnGroundS, as it passes a buoy.
+/// of that, and its way begins anew. What is proven stays so for kOnGroundS, as it passes a buoy; then it is doubted, but is no piece.
 class Proof {
  public:
   static constexpr double kLeastS = 1.0;
@@ -61,10 +61,11 @@ class Proof {
     Utime begin;  // of the way by which it shows itself
     Eigen::Vector2d begin_m = Eigen::Vector2d::Zero();
     Utime seen;                                          // moving, last
-    Utime off_ground;                                    // the same, where nothing stood before
+    double on_ground_s = 0.0;                            // on end, seen
     Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  // where it was seen to move first
     bool is_beside = false;                              // it began so
     bool has_left = false;                               // or it did not begin beside anything
+    bool was_proven = false;                             // and is doubted
     bool is_proven = false;
   };
   static Course CourseOf(const Track& track, std::span<const Track> tracks, std::span<const Eigen::Vector2d> shore_m);

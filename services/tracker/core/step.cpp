@@ -38,7 +38,6 @@ void Step::Run() {
   Merge();
   EndUnseen();
   RememberGround();
-  RememberGround();
   LookAtGround();
   if (is_sight_known_) known_.watched.Add(known_.sight, scan_.end_time);
   Label();
@@ -57,7 +56,7 @@ void Step::Predict() {
   known_.land_pieces.Predict(dt_s_);
   for (auto& track : known_.tracks) {
     track.segment_ids.clear();
-    track.is_seen_now = track.is_inside_now = track.is_on_ground = false;
+    track.is_seen_now = track.is_inside_now = false;
     track.detection = 0.0;
     if (!track.body) continue;
     track.body->Predict(dt_s_);

@@ -55,7 +55,8 @@ inline bool IsWithin(const Eigen::Vector2d& place_m, const Eigen::Vector2d& midd
   return (place_m - middle_m).norm() <= radius_m + kOfRoundingM;
 }
 
-/// Run it once; its results are then to be taken. Its stages are files: step_associate, step_exist, step_move, step_land, step_merge, step_settle.
+/// Run it once; its results are then to be taken. Its stages are files: step_associate, step_exist, step_ground, step_move, step_land, step_merge,
+/// step_settle.
 class Step {
  public:
   Step(const TrackerParams& params, const ScanInput& scan, Known& known, double dt_s) : params_(params), scan_(scan), known_(known), dt_s_(dt_s) {}
@@ -96,6 +97,7 @@ class Step {
   std::optional<std::size_t> SightingAround(const Followed& track) const;
   void FindInside();
   bool IsClear(std::size_t i) const;
+  bool IsAtOwnHull(const Sighting& sighting) const;
   bool IsAlone(const Followed& track, std::size_t i) const;
   void AskWatched(Followed& track) const;
   void RememberGround();

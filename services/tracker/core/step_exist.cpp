@@ -107,14 +107,19 @@ bool Step::IsClear(std::size_t i) const {
   return std::ranges::none_of(known_.tracks, [&](const Followed& other) { return other.body && is_near(other.middle_m, other.radius_m); });
 }
 
-// Beside a known thing its parts may be seen, beside the own hull crew, rods and flags: these stand as still as the thing or the boat.
-bool Step::IsAlone(const Followed& track, std::size_t i) const {
-  constexpr double kAloneM = 4.0;
+// Where crew, rods and flags are seen.
+bool Step::IsAtOwnHull(const Sighting& sighting) const {
   constexpr double kOwnGearM = 2.0;
-  const auto& sighting = sightings_[i];
   const std::array<Eigen::Vector2d, 1> place{ToVessel(sighting.middle_m)};
   const double to_own_m = params_.own_hull_m.empty() ? place.front().norm() : GapOf(params_.own_hull_m, place).distance_m;
-  if (to_own_m < kOwnGearM + sighting.radius_m) return false;
+  return to_own_m < kOwnGearM + sighting.radius_m;
+}
+
+// Beside a known thing its parts may be seen, beside the own hull gear: these stand as still as the thing or the boat.
+bool Step::IsAlone(const Followed& track, std::size_t i) const {
+  constexpr double kAloneM = 4.0;
+  const auto& sighting = sightings_[i];
+  if (IsAtOwnHull(sighting)) return false;
   return std::ranges::none_of(known_.tracks, [&](const Followed& other) {
     return other.is_confirmed && other.id != track.id && IsWithin(other.middle_m, sighting.middle_m, kAloneM + other.radius_m + sighting.radius_m);
   });

@@ -57,50 +57,6 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
   Place(track);
 }
 
-// The returns of all that is not known to move. A drop is one return.
-void Step::RememberGround() {
-  constexpr std::size_t kLeastReturns = 2;
-  known_.ground.Begin(scan_.end_time);
-  std::vector<std::uint8_t> moves(sightings_.size(), 0);
-  for (const auto& track : known_.tracks) {
-    if (track.is_seen_now && track.frame != 0) moves[track.sighting] = 1;
-  }
-  for (std::size_t i = 0; i < sightings_.size(); ++i) {
-    if (moves[i] == 0 && sightings_[i].places_m.size() >= kLeastReturns) known_.ground.Add(sightings_[i].places_m);
-  }
-}
-
-void Step::LookAtGround() {
-  for (auto& track : known_.tracks) {
-    const bool moves = track.body && track.is_seen_now && track.body->IsMoving(params_.moving_probability);
-    track.is_on_ground = moves && IsOnGround(track);
-  }
-}
-
-// What moves comes to places that were empty. Whether most of the returns that lead lie where something stood, before the thing can have come there:
-// then it is a piece of a quay that is taken for the whole, now this piece and now that, or it went over to what stands.
-bool Step::IsOnGround(const Followed& track) const {
-  constexpr double kWayM = 1.0;    // ago: farther off than cells that count for a place
-  constexpr double kLeadsM = 0.5;  // behind the foremost return
-  constexpr double kSlowestMps = 0.1;
-  constexpr int kStandsFor = 3;  // half seconds: a crest passes
-  const Eigen::Vector2d velocity_mps = track.body->velocity_mps();
-  const double speed_mps = std::max(velocity_mps.norm(), kSlowestMps);
-  const std::chrono::duration<double> way_s(kWayM / speed_mps);
-  const auto before = scan_.end_time - std::chrono::duration_cast<std::chrono::microseconds>(way_s);
-  const auto& places_m = sightings_[track.sighting].places_m;
-  double foremost_m = -std::numeric_limits<double>::infinity();
-  for (const auto& place_m : places_m) foremost_m = std::max(foremost_m, place_m.dot(velocity_mps) / speed_mps);
-  int num_leading = 0;
-  int num_on_ground = 0;
-  for (const auto& place_m : places_m) {
-    if (place_m.dot(velocity_mps) / speed_mps < foremost_m - kLeadsM) continue;
-    ++num_leading;
-    if (known_.ground.TimesMet(place_m, before) >= kStandsFor) ++num_on_ground;
-  }
-  return 2 * num_on_ground > num_leading;
-}
-
 // A moving thing is remembered in a frame of its own, until it has stood for a while.
 void Step::ChooseFrame(Followed& track) {
   constexpr double kStandsInFrameS = 2.0;

@@ -367,15 +367,20 @@ TEST(ClosestApproachDangers, OfAPieceOfTheBerthAreNoneForABoatThatLiesStill) {
 }
 
 // Beams that find nothing where it would be by now say that it is elsewhere. What stands is told all the same: waves may hide it.
-TEST(ClosestApproachDangers, OfWhatMovesAreAsLikelyAsItIsThere) {
+TEST(ClosestApproachDangers, OfWhatMovesUnseenAreAsLikelyAsItIsThere) {
   Picture picture;
-  picture.tracks = {At(1, {0.0, 20.0}), At(2, {5.0, 20.0})};
-  picture.tracks[0].velocity_mps = {0.0, -1.0};
-  for (auto& track : picture.tracks) track.existence_probability = 0.25;
-  const auto dangers = ClosestApproachDangers(kApproach, picture, Own(), false);
-  ASSERT_EQ(dangers.size(), 2U);
+  picture.tracks = {At(1, {0.0, 20.0}), At(2, {5.0, 20.0}), At(3, {-5.0, 20.0})};
+  for (auto& track : picture.tracks) {
+    track.existence_probability = 0.25;
+    track.seen = kStart - std::chrono::seconds(1);
+  }
+  picture.tracks[0].velocity_mps = picture.tracks[2].velocity_mps = {0.0, -1.0};
+  picture.tracks[2].seen = kStart;
+  const auto dangers = ClosestApproachDangers(kApproach, picture, Own(), false, {}, nullptr, kStart);
+  ASSERT_EQ(dangers.size(), 3U);
   EXPECT_DOUBLE_EQ(dangers[0].probability, 0.2);
   EXPECT_DOUBLE_EQ(dangers[1].probability, 0.8);
+  EXPECT_DOUBLE_EQ(dangers[2].probability, 0.8) << "it is seen";
 }
 
 // A crest runs; what stands there all the same is told as it was.

@@ -142,6 +142,14 @@ TEST_F(ProofTest, WhatComesToWhereSomethingStoodIsAPiece) {
   EXPECT_TRUE(proof_.IsProven(boat_));
 }
 
+TEST_F(ProofTest, WhatWasHiddenBesideAPileStaysProven) {
+  Run(1.3, 4.0);
+  Run(0.7, 4.0, 1.0, false);
+  is_on_ground_ = true;
+  Run(0.2, 4.0);
+  EXPECT_TRUE(proof_.IsProven(boat_));
+}
+
 TEST_F(ProofTest, OfTwoTracksThatAreOneEitherProvesIt) {
   for (const bool is_first : {false, true}) {
     SCOPED_TRACE(is_first);
@@ -154,7 +162,11 @@ TEST_F(ProofTest, OfTwoTracksThatAreOneEitherProvesIt) {
       proof_.Update(is_first ? std::vector{bow, stern} : std::vector{stern, bow});
     }
     proof_.Rename(2, 1);
-    EXPECT_TRUE(proof_.IsProven(BoxAt(1, 0.0, 6.0, {0.0, 4.0})));
+    auto boat = BoxAt(1, 0.0, 6.4, {0.0, 4.0});
+    boat.seen = kBegin + milliseconds(1600);
+    boat.is_on_ground = true;
+    proof_.Update(std::vector{boat});
+    EXPECT_TRUE(proof_.IsProven(boat));
   }
 }
 
@@ -170,6 +182,9 @@ TEST_F(ProofTest, ACourseThatIsProvenStaysSoBesideABuoyAndNotAlongAQuay) {
   EXPECT_TRUE(proof_.IsProven(boat_)) << "and another";
   Run(0.2, 4.0);
   EXPECT_FALSE(proof_.IsProven(boat_)) << "it goes from one thing that stands to the next";
+  EXPECT_FALSE(proof_.MayBePiece(1)) << "it was proven: what is grave is told";
+  Run(1.0, 4.0);
+  EXPECT_FALSE(proof_.MayBePiece(1));
   is_on_ground_ = false;
   Run(1.3, 4.0);
   EXPECT_TRUE(proof_.IsProven(boat_));

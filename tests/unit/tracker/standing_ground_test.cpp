@@ -22,12 +22,13 @@ class StandingGroundTest : public ::testing::Test {
     for (int i = 0; i < num; ++i) {
       time_ += milliseconds(100);
       ground_.Begin(time_);
-      ground_.Add(places_m);
+      ground_.Add(places_m, heights_m_);
     }
   }
-  int TimesMet(const Eigen::Vector2d& place_m) const { return ground_.TimesMet(place_m, time_); }
+  int TimesMet(const Eigen::Vector2d& place_m) const { return ground_.TimesMet(place_m, 1.0, time_); }
 
   StandingGround ground_;
+  std::vector<double> heights_m_;  // of each place
   Utime time_ = kBegin - milliseconds(100);
 };
 
@@ -38,8 +39,8 @@ TEST_F(StandingGroundTest, CountsHalfSecondsBeforeThePresentOne) {
   EXPECT_EQ(TimesMet(kPlace_m), 1);
   Scans(20, {kPlace_m});
   EXPECT_EQ(TimesMet(kPlace_m), 5);
-  EXPECT_EQ(ground_.TimesMet(kPlace_m, time_ - seconds(1)), 3);
-  EXPECT_EQ(ground_.TimesMet(kPlace_m, time_ + seconds(1)), 5) << "what is to come counts as now";
+  EXPECT_EQ(ground_.TimesMet(kPlace_m, 1.0, time_ - seconds(1)), 3);
+  EXPECT_EQ(ground_.TimesMet(kPlace_m, 1.0, time_ + seconds(1)), 5) << "what is to come counts as now";
 }
 
 TEST_F(StandingGroundTest, KnowsWhatWasSeenNowAndThen) {
@@ -81,13 +82,29 @@ TEST_F(StandingGroundTest, ForgetsAfterHalfAMinute) {
   EXPECT_EQ(ground_.num_cells(), 0U);
 }
 
+TEST_F(StandingGroundTest, KeepsABridgeApartFromWhatIsBelow) {
+  heights_m_ = {3.0};
+  Scans(11, {kPlace_m});
+  EXPECT_EQ(TimesMet(kPlace_m), 0);
+  EXPECT_EQ(ground_.TimesMet(kPlace_m, 4.0, time_), 2);
+  heights_m_ = {0.5};
+  Scans(10, {kPlace_m});
+  EXPECT_EQ(TimesMet(kPlace_m), 2);
+}
+
 TEST_F(StandingGroundTest, TakesAnyPlaceAndTime) {
   constexpr double kMost = std::numeric_limits<double>::max();
   Scans(11, {{kMost, -kMost}, {0.0, 0.0}});
   EXPECT_EQ(TimesMet({kMost, -kMost}), 2);
-  EXPECT_EQ(TimesMet({-kMost, kMost}), 0);
-  EXPECT_EQ(ground_.TimesMet({0.0, 0.0}, Utime::min()), 0);
-  EXPECT_EQ(ground_.TimesMet({0.0, 0.0}, Utime::max()), 2);
+  EXPECT_EQ(TimesMet({-kMost, kMost}), 2) << "too far to be told apart";
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Scans(1, {{kNan, kNan}});
+  TimesMet({kNan, 0.0});
+  ground_.Begin(kBegin - seconds(100));
+  ground_.Add(std::vector<Eigen::Vector2d>{{5.0, 5.0}}, {});
+  ground_.Begin(time_);
+  EXPECT_EQ(ground_.TimesMet({0.0, 0.0}, 0.0, Utime::min()), 0);
+  EXPECT_EQ(ground_.TimesMet({0.0, 0.0}, 0.0, Utime::max()), 2);
 }
 
 TEST_F(StandingGroundTest, HoldsNoMoreThanItsMost) {
