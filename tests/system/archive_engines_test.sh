@@ -208,14 +208,14 @@ finish full local
 step 'a slow mount, which holds logs and archive and goes away in mid-run'
 mkdir -p behind/logs mounted
 cp -a logs/. behind/logs/
-mount_slowly() { bindfs --read-rate=5M --write-rate=5M "$work/behind" "$work/mounted" || fail 'bindfs'; }
+mount_slowly() { bindfs --read-rate=20M --write-rate=20M "$work/behind" "$work/mounted" || fail 'bindfs'; }
 mount_slowly
 archive --archive mounted/archive scan mounted/logs >said 2>&1 && archive --archive mounted/archive plan --config "$config" --name A >said 2>&1 || fail 'scan and plan'
 step 'scanned and planned'
 "$bin/lookout-archive" --archive mounted/archive run --jobs 2 --retries 0 >said 2>&1 &
 pid=$!
 sleep 10
-pkill -KILL --parent 1,$$ -f 'bindfs --read-rate=5M'  # the server of the mount dies: all that is open there fails from now on
+pkill -KILL --parent 1,$$ -f 'bindfs --read-rate=20M'  # the server of the mount dies: all that is open there fails from now on
 wait "$pid" && fail 'a mount that went away is not told by the exit code'
 umount -l mounted
 num_done=$(find behind/archive/results -name '*.json' | wc -l)

@@ -12,7 +12,6 @@
 #include "services/tracker/core/encounter.hpp"
 #include "services/tracker/core/land_approach.hpp"
 #include "services/tracker/core/outline.hpp"
-#include "services/tracker/core/watched_water.hpp"
 
 namespace lookout::tracker {
 
