@@ -158,7 +158,13 @@ else
     scontrol update nodename=archive-node state=resume 2>/dev/null
     sinfo -h -o %T | grep -q idle && break
   done
+  # A step of before that still ran may drain it once more: the administrator stays awake.
+  while sleep 2; do
+    ! sinfo -h -o %T 2>/dev/null | grep -q drain || scontrol update nodename=archive-node state=resume 2>/dev/null
+  done &
+  administrator=$!
   finish slurm slurm
+  kill "$administrator"
   [ "$(tree slurm)" = "$wanted" ] || fail 'Slurm gives another tree'
   scancel --user root
 fi
