@@ -62,13 +62,16 @@ python3 - logs/nothing-1.pcap <<'PYTHON'
 import struct, sys
 open(sys.argv[1], "wb").write(struct.pack("<IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 1))
 PYTHON
+# Recordings that are not used are each told, however many they are.
+mkdir logs/old
+for i in 1 2 3 4; do cp logs/older-1.lcmlog "logs/old/older-$i.lcmlog"; done
 chmod -R a-w logs
 
 expect_code 1 plan --config "$config"
 says 'no archive here'
 expect_code 2 scan nowhere
 expect_code 0 scan logs
-for text in 'foreign    '"$work/logs/notes.txt" 'foreign    4 files of '"$work/logs/many/ (1.txt, 2.txt, ...): is text" 'junk.bin' 'empty.lcmlog' 'is of other wire types than this version' 'damaged    '"$work/logs/torn-1" ' 6 runs'; do
+for text in 'foreign    '"$work/logs/notes.txt" 'foreign    4 files of '"$work/logs/many/ (1.txt, 2.txt, ...): is text" 'junk.bin' 'empty.lcmlog' 'is of other wire types than this version' 'older      '"$work/logs/old/older-4.lcmlog" 'damaged    '"$work/logs/torn-1" ' 6 runs'; do
   [ "$text" = ' 6 runs' ] && { grep -q '^6 runs' said || fail 'not 6 runs'; continue; }
   says "$text"
 done

@@ -224,7 +224,8 @@ struct Unused {
   std::vector<std::string> names;
 };
 
-// A folder may hold thousands of files that are no recordings: a line for each reason, which names the first ones. The index has them all.
+// A folder may hold thousands of files that are no recordings: a line for each reason, which names the first ones. The index has them all. Recordings
+// that are damaged, older or unreadable are each told.
 void TellUnused(Database& index, std::ostream& out) {
   std::vector<Unused> groups;
   auto rows = index.Prepare("SELECT path, state, reason FROM file WHERE state != 'sound' AND kind != 'truth' ORDER BY path");
@@ -239,7 +240,7 @@ void TellUnused(Database& index, std::ostream& out) {
   }
   constexpr std::size_t kMostLines = 3;
   for (const auto& group : groups) {
-    if (group.names.size() <= kMostLines) {
+    if (group.state != Word(Recording::State::kForeign) || group.names.size() <= kMostLines) {
       for (const auto& name : group.names) out << fmt::format("{:<10} {}{}: {}\n", group.state, group.folder, name, group.reason);
     } else {
       out << fmt::format("{:<10} {} files of {} ({}, {}, ...): {}\n", group.state, group.names.size(), group.folder, group.names[0], group.names[1],

@@ -50,9 +50,12 @@ void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2
     course.on_ground_s = track.is_on_ground ? course.on_ground_s + std::min(step_s, kMostStepS) : 0.0;
     if (course.is_proven && course.on_ground_s < kOnGroundS) continue;
     if (track.is_on_ground) {
-      // What was proven is doubted, but is no piece.
-      const bool was_proven = course.is_proven || course.was_proven;
-      course = {track.seen, track.position_m, track.seen, course.on_ground_s, track.position_m, course.is_beside, was_proven, was_proven, false};
+      // Its way begins anew. What was proven is doubted, but is no piece.
+      course.begin = track.seen;
+      course.begin_m = course.origin_m = track.position_m;
+      course.was_proven = course.was_proven || course.is_proven;
+      course.has_left = course.was_proven;
+      course.is_proven = false;
       continue;
     }
     const double speed_mps = track.velocity_mps.norm();
