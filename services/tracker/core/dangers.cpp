@@ -335,9 +335,9 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
                   .seen = track.seen,
                   .place_map_m = place.position_map_m};
     add_approach(track.approach, params.limit_m, danger);
-    // Where a moving thing is that nobody sees is a guess, and beams that find nothing there say so.
-    const bool is_guess = !track.velocity_mps.isZero(0.0) && time - track.seen > kSeenNow;
-    if (is_guess) danger.probability *= track.existence_probability;
+    // Where a moving thing goes is a guess, and beams that find nothing there say so. What stands may be hidden.
+    const bool moves = !track.velocity_mps.isZero(0.0);
+    if (moves) danger.probability *= track.existence_probability;
     // A boat in her berth gains nothing by being told of a piece of it.
     const bool is_of_berth = is_own_still && proof != nullptr && proof->MayBePiece(track.id);
     const auto doubt = [&track, time, is_of_berth](Danger& of) {
@@ -354,7 +354,7 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
       auto standing = danger;
       standing.is_just_seen = false;
       add_approach(track.approach_if_standing, params.limit_m, standing);
-      if (is_guess) standing.probability *= track.existence_probability;
+      if (time - track.seen > kSeenNow) standing.probability *= track.existence_probability;
       if (is_young) doubt(standing);
       if (!is_own_still && IsGraver(standing, danger)) danger = standing;
     }

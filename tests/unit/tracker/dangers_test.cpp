@@ -367,7 +367,7 @@ TEST(ClosestApproachDangers, OfAPieceOfTheBerthAreNoneForABoatThatLiesStill) {
 }
 
 // Beams that find nothing where it would be by now say that it is elsewhere. What stands is told all the same: waves may hide it.
-TEST(ClosestApproachDangers, OfWhatMovesUnseenAreAsLikelyAsItIsThere) {
+TEST(ClosestApproachDangers, OfWhatMovesAreAsLikelyAsItIsThere) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 20.0}), At(2, {5.0, 20.0}), At(3, {-5.0, 20.0})};
   for (auto& track : picture.tracks) {
@@ -380,7 +380,7 @@ TEST(ClosestApproachDangers, OfWhatMovesUnseenAreAsLikelyAsItIsThere) {
   ASSERT_EQ(dangers.size(), 3U);
   EXPECT_DOUBLE_EQ(dangers[0].probability, 0.2);
   EXPECT_DOUBLE_EQ(dangers[1].probability, 0.8);
-  EXPECT_DOUBLE_EQ(dangers[2].probability, 0.8) << "it is seen";
+  EXPECT_DOUBLE_EQ(dangers[2].probability, 0.2) << "something is seen there now and then";
 }
 
 // A crest runs; what stands there all the same is told as it was.
