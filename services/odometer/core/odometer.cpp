@@ -40,9 +40,9 @@ constexpr int kMaxUnknown = 5;
 constexpr int kLeastMatched = 60;
 constexpr double kLeastShareOfNear = 0.5;
 constexpr double kLeastShareOfAll = 0.15;
-// What stands is more than one boat: returns in so many squares, or in so many things apart from each other.
-constexpr double kSquareM = 5.0;
-constexpr std::size_t kLeastSquares = 10;
+// What stands is more than one ship, of which the largest on canals and rivers is 110 m long (CEMT class Va): returns in so many squares, or in so
+// many things apart from each other.
+constexpr std::size_t kLeastSquares = 22;
 constexpr std::size_t kLeastThings = 5;
 // Or it is all around the boat, as in a lock: returns in so many of 12 sectors. A boat alongside takes 6 at most.
 constexpr int kNumSectors = 12;
@@ -78,9 +78,10 @@ Eigen::Matrix3d PlanarOf(const Matrix6& matrix) {
 // m, so the variance of its error is 1 / (1 - m)^2. Along each of them the place is not known worse than it was predicted; a bound in all directions
 // made the drift of the heading twice as large on the lake.
 //
-// @param distortion  covariance of the place by a distorted scan
-Eigen::Matrix3d PlaceCovarianceOf(const Fit& fit, const Eigen::Matrix3d& predicted, const Eigen::Matrix3d& distortion) {
+// @param distorted  covariance of the place by a distorted scan
+Eigen::Matrix3d PlaceCovarianceOf(const Fit& fit, const Eigen::Matrix3d& predicted, const Eigen::Matrix3d& distorted) {
   const Eigen::Matrix3d seen = PlanarOf(fit.information.ldlt().solve(Matrix6::Identity()));
+  const Eigen::Matrix3d added = distorted + PlanarOf(fit.covariance_of_things);
   const Eigen::Matrix3d information = seen.ldlt().solve(Eigen::Matrix3d::Identity());
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(PlanarOf(fit.information_spurious), information);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -89,7 +90,7 @@ Eigen::Matrix3d PlaceCovarianceOf(const Fit& fit, const Eigen::Matrix3d& predict
     const Eigen::Vector3d scaled = information * direction;
     const double rest = 1.0 - solver.eigenvalues()[i];
     const double most = 1.0 / direction.dot(predicted.ldlt().solve(direction));
-    const double variance = rest > 0.0 ? std::min(1.0 / (rest * rest) + scaled.dot(distortion * scaled), most) : most;
+    const double variance = rest > 0.0 ? std::min(1.0 / (rest * rest) + scaled.dot(added * scaled), most) : most;
     covariance += variance * direction * direction.transpose();
   }
   return covariance;
@@ -264,6 +265,9 @@ void Odometer::Follow(const Fit& fit, const Prediction& predicted, double since_
 
 bool Odometer::IsDetermined() const {
   const Eigen::Matrix3d rates = uncertainty_.rates();
+  // A fit that is less sure than what was expected can leave no covariance at all.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> whole(rates, Eigen::EigenvaluesOnly);
+  if (!(whole.eigenvalues()[0] > 0.0)) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(rates.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
   return solver.eigenvalues()[1] <= kMaxSpeedSdMps * kMaxSpeedSdMps && rates(2, 2) <= kMaxTurnSdRadps * kMaxTurnSdRadps;
 }

@@ -1,6 +1,7 @@
 #include "services/odometer/core/registration.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -26,6 +27,10 @@ constexpr double kNoiseM = 0.1;
 // Scale of Geman-McClure's function at the end; at first it is a third of the distance that is searched.
 constexpr double kScaleM = 0.15;
 constexpr int kWideIterations = 4;
+// At first a return may lie farther off, the farther it is: in waves a small boat rolls by 15 deg/s, which changes within a scan by as much as a boat
+// of a period of 3 s changes it, so the attitude of the next scan is known to a degree. Three deviations.
+constexpr double kTiltRad = 0.05;
+constexpr double kFarthestM = 6.0;  // that the map is searched
 // A return is matched where its difference, as the shape weights it, is below this.
 constexpr double kMatchedM = 0.2;
 
@@ -37,20 +42,24 @@ Vector6 Difference(const Eigen::Isometry3d& T, const Eigen::Isometry3d& from) {
 
 struct Normal {
   Matrix6 information = Matrix6::Zero();
+  Matrix6 curvature = Matrix6::Zero();  // derivative of the gradient
   Vector6 gradient = Vector6::Zero();
 };
 
 // Also says which returns are matched.
-Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_vessel, double search_m, double scale_m, const LocalMap& map,
-           Fit& fit) {
+Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_vessel, double search_m, bool is_wide, const LocalMap& map,
+           std::vector<Vector6>& pulls, Fit& fit) {
   Normal normal;
+  pulls.assign(points.size(), Vector6::Zero());
   fit.information_spurious.setZero();
   fit.num_near = fit.num_matched = 0;
   double squares_m2 = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d arm_m = T_map_vessel.linear() * points[i].p_m;
     const Eigen::Vector3d p_map_m = arm_m + T_map_vessel.translation();
-    const auto match = map.Nearest({p_map_m, T_map_vessel.linear() * points[i].normal, points[i].shape}, search_m);
+    const double reach_m = std::min(kFarthestM, search_m + (is_wide ? kTiltRad * points[i].p_m.norm() : 0.0));
+    const double scale_m = is_wide ? std::max(kScaleM, reach_m / 3.0) : kScaleM;
+    const auto match = map.Nearest({p_map_m, T_map_vessel.linear() * points[i].normal, points[i].shape}, reach_m);
     fit.is_near[i] = match.has_value();
     fit.is_matched[i] = false;
     if (!match) continue;
@@ -64,7 +73,10 @@ Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_v
     jacobian.rightCols<3>() = -Cross(arm_m);
     const Eigen::Matrix<double, 6, 3> weighted = weight * (jacobian.transpose() * match->weight);
     normal.information += weighted * jacobian;
-    normal.gradient += weighted * difference_m;
+    const Vector6 bent = jacobian.transpose() * weighted_m;
+    normal.curvature -= 4.0 * weight / (scale_m * scale_m + square_m2) * bent * bent.transpose();
+    pulls[i] = weighted * difference_m;
+    normal.gradient += pulls[i];
     const Vector6 along = jacobian.transpose() * match->along;
     fit.information_spurious += weight * along * along.transpose();
     ++fit.num_near;
@@ -75,6 +87,31 @@ Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_v
   }
   fit.residual_m = fit.num_matched > 0 ? std::sqrt(squares_m2 / fit.num_matched) : 0.0;
   return normal;
+}
+
+// @param pulls  of each return at the fit
+Matrix6 CovarianceOfThings(const std::vector<MapPoint>& points, const std::vector<Vector6>& pulls, const Matrix6& curvature, const Fit& fit) {
+  // Where the returns differ by as much as the scale, the pulls hardly change with the place; what is left of that is uncertain, too.
+  constexpr double kLeastCurvature = 0.2;
+  CubeIndex index;
+  std::vector<Vector6> of_squares;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!fit.is_near[i]) continue;
+    auto square = CubeOf(points[i].p_m, kSquareM);
+    square.z() = 0;
+    const auto [number, is_new] = index.Insert(square);
+    if (is_new) of_squares.emplace_back(Vector6::Zero());
+    of_squares[static_cast<std::size_t>(number)] += pulls[i];
+  }
+  Matrix6 scatter = Matrix6::Zero();
+  for (const auto& pull : of_squares) scatter += pull * pull.transpose();
+  // The eigenvectors make the information the identity, and the curvature diagonal.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(curvature, fit.information);
+  if (solver.info() != Eigen::Success) return Matrix6::Zero();
+  const Vector6 inverse = solver.eigenvalues().cwiseMax(kLeastCurvature).cwiseInverse();
+  const Matrix6 sensitivity = solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+  const Matrix6 covariance = sensitivity * scatter * sensitivity;
+  return covariance.allFinite() ? covariance : Matrix6::Zero();
 }
 
 }  // namespace
@@ -94,20 +131,24 @@ Fit Register(const std::vector<MapPoint>& points, const Expected& expected, cons
   fit.T_map_vessel = expected.T_map_begin;
   fit.is_near.assign(points.size(), false);
   fit.is_matched.assign(points.size(), false);
+  std::vector<Vector6> pulls;
+  Matrix6 curvature = Matrix6::Zero();
   for (int i = 0; i < kMaxIterations; ++i) {
-    const double scale_m = i < kWideIterations ? std::max(kScaleM, expected.search_m / 3.0) : kScaleM;
-    const auto normal = Sum(points, fit.T_map_vessel, expected.search_m, scale_m, map, fit);
+    const bool is_wide = i < kWideIterations;
+    const auto normal = Sum(points, fit.T_map_vessel, expected.search_m, is_wide, map, pulls, fit);
     fit.information_seen = normal.information;
     fit.information = normal.information + expected.information;
+    curvature = fit.information + normal.curvature;
     const Vector6 gradient = normal.gradient + expected.information * Difference(fit.T_map_vessel, expected.T_map_vessel);
     const Vector6 step = -fit.information.ldlt().solve(gradient);
     if (!step.allFinite()) break;
     fit.T_map_vessel.translation() += step.head<3>();
     fit.T_map_vessel.linear() = RotationBy(step.tail<3>()) * fit.T_map_vessel.linear();
     const bool is_still = step.head<3>().norm() < kStepM && step.tail<3>().norm() < kStepRad;
-    if (is_still && scale_m == kScaleM) break;
-    if (is_still) i = std::max(i, kWideIterations - 1);
+    if (is_still && !is_wide) break;
+    if (is_still) i = kWideIterations - 1;
   }
+  fit.covariance_of_things = CovarianceOfThings(points, pulls, curvature, fit);
   return fit;
 }
 

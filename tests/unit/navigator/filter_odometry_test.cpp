@@ -210,6 +210,36 @@ TEST(LidarAid, StatesWhatTheErrorsOfTheMotionsAddUpTo) {
   EXPECT_LT(heading_nees, 1.6);
 }
 
+// A barge that goes with the boat, or a bank in steep waves: motions that a receiver contradicts by less than the gate, and all the same way. When it
+// stops, the place is stated as badly as it is known.
+TEST(LidarAid, IsBelievedAsFarAsItWasRightBefore) {
+  OdometryRun run;
+  run.boat.speed_mps = 1.0;
+  run.end_s = 40.0;
+  run.gap_begin_s = 30.0;
+  run.spoil = [](double t, OdometryMotion& motion) {
+    if (t > 5.0) motion.displacement_m *= 0.6;
+  };
+  const auto astray = run.Sail();
+  run.spoil = [](double /*t*/, OdometryMotion& /*motion*/) {};
+  const auto right = run.Sail();
+  EXPECT_GT(astray.ErrorM(39.9).norm(), 2.0);
+  EXPECT_LT(right.ErrorM(39.9).norm(), 0.2);
+  EXPECT_LT(SdM(right.At(39.9)), 0.7);
+  EXPECT_GT(SdM(astray.At(39.9)), 2.0 * SdM(right.At(39.9)));
+}
+
+// The same of the turn, beside two antennas: the heading stays theirs.
+TEST(LidarAid, ATurnThatDriftsDoesNotLeadTheHeadingAway) {
+  OdometryRun run;
+  run.gap_begin_s = run.gap_end_s = 100.0;
+  run.end_s = 60.0;
+  run.params.heading_sd_rad = DegToRad(0.2);
+  run.spoil = [](double /*t*/, OdometryMotion& motion) { motion.turn_rad += DegToRad(0.05); };
+  const auto result = run.Sail();
+  for (double t = 30.0; t <= 60.0; t += kScanS) EXPECT_LT(std::abs(RadToDeg(result.HeadingErrorRad(t))), 0.2) << t;
+}
+
 TEST(LidarAid, AWrongMotionIsGatedAndTold) {
   OdometryRun run;
   run.gap_begin_s = run.gap_end_s = 100.0;  // no gap

@@ -94,6 +94,13 @@ TEST(Odometer, OneBoatAloneIsUnknown) {
   EXPECT_EQ(NumKnown(MotionsOf(walls, {2.0, 0.0}, 30)), 0);
 }
 
+// A barge at 1.5 m/s, along which a boat would go in reverse.
+TEST(Odometer, ABargeAloneIsUnknown) {
+  std::vector<Wall> walls;
+  AddBox({10.0, 10.0}, 70.0, 8.0, {1.5, 0.0}, walls);
+  EXPECT_EQ(NumKnown(MotionsOf(walls, {0.5, 0.0}, 30)), 0);
+}
+
 // In a lock, where everything is within 8 m.
 TEST(Odometer, WallsAllAroundAreNotOneThing) {
   std::vector<Wall> walls;
@@ -147,8 +154,8 @@ TEST(Odometer, AlongAQuayAloneTheWayIsSoonUnknown) {
       }
       const auto motion = odometer.Consume(scan);
       if (i >= 70) {
-        EXPECT_EQ(motion.reason, Reason::kUndetermined) << i << " noise " << noise_m;
-        EXPECT_LT(std::sqrt(motion.covariance(1, 1)), 0.06) << "across the quay";
+        // As much of the quay as is in sight might be a ship.
+        EXPECT_EQ(motion.reason, Reason::kOneThing) << i << " noise " << noise_m;
       }
       if (!motion.is_known()) continue;
       ++num_known;

@@ -39,6 +39,13 @@ Innovation<3> MotionOf(const OdometryMotion& motion, const FilterParams& params,
   return innovation;
 }
 
+// With the deviations by which motions have erred lately.
+Innovation<3> AsTried(Innovation<3> innovation, const MotionTrial& trial) {
+  const Eigen::Vector3d factors(trial.way_factor(), trial.way_factor(), trial.turn_factor());
+  innovation.noise = factors.asDiagonal() * innovation.noise * factors.asDiagonal();
+  return innovation;
+}
+
 template <int kRows>
 Innovation<kRows> FirstOf(const Innovation<3>& motion) {
   Innovation<kRows> innovation;
@@ -65,7 +72,9 @@ bool GoesOn(const UseTimes& input, Utime time) {
 // The lidar replaces what is not measured, and helps what is measured to centimetres and a fraction of a degree. Nothing else: a large ship that
 // gathers way looks like a shore, and would draw the state away from a receiver or a compass whose slow error is not known, however often these
 // measure.
-bool ApplyNeeded(const Innovation<3>& motion, bool may_use_way, State& state) {
+//
+// @param stated  as the motion says itself: the gate is of this
+bool ApplyNeeded(const Innovation<3>& stated, bool may_use_way, State& state) {
   const auto& aiding = state.aiding;
   const bool uses_way = may_use_way && (!GoesOn(aiding.fix, state.time) || aiding.fix_error_model.kind == ErrorKind::kRtk);
   // Where the course stands in for a heading, leeway and turning make it wrong by far more than the lidar is.
@@ -73,15 +82,16 @@ bool ApplyNeeded(const Innovation<3>& motion, bool may_use_way, State& state) {
   const bool uses_turn = is_poor || !GoesOn(aiding.heading(), state.time) || aiding.heading_error_model.kind == ErrorKind::kTwoAntennas;
   // All of it must agree, also what is not used.
   State agreeing = state;
-  if (!(may_use_way ? Correct(motion, false, agreeing) : Correct(TurnOf(motion), false, agreeing)).is_accepted) return false;
-  if (uses_way) state.aiding.lidar_led_way = agreeing.aiding.lidar_led_way = state.time;
-  if (uses_turn) state.aiding.lidar_led_turn = agreeing.aiding.lidar_led_turn = state.time;
-  if (uses_turn && (uses_way || !may_use_way)) {
-    state = agreeing;
+  if (!(may_use_way ? Correct(stated, false, agreeing) : Correct(TurnOf(stated), false, agreeing)).is_accepted) return false;
+  const auto motion = AsTried(stated, aiding.motion_trial);
+  if (uses_way) state.aiding.lidar_led_way = state.time;
+  if (uses_turn) state.aiding.lidar_led_turn = state.time;
+  if (uses_way && uses_turn) {
+    Correct(motion, true, state);
   } else if (uses_way) {
-    Correct(FirstOf<2>(motion), false, state);
+    Correct(FirstOf<2>(motion), true, state);
   } else if (uses_turn) {
-    Correct(TurnOf(motion), false, state);
+    Correct(TurnOf(motion), true, state);
   }
   return true;
 }
@@ -98,6 +108,10 @@ void ApplyMotion(const OdometryMotion& motion, const FilterParams& params, State
   const bool may_use_way = state.aiding.scan_place.has_position && state.aiding.has_position;
   const auto innovation = MotionOf(motion, params, state);
   NoteTurn(innovation.residual[2], state);
+  auto& aiding = state.aiding;
+  const bool is_way_measured = may_use_way && GoesOn(aiding.fix, state.time);
+  const bool is_turn_measured = aiding.heading_source != HeadingSource::kCourse && GoesOn(aiding.heading(), state.time);
+  aiding.motion_trial.Add(motion, innovation.noise, is_way_measured, is_turn_measured, params, state);
   if (IsOdometryRefused(state)) return;
   if (ApplyNeeded(innovation, may_use_way, state)) {
     state.aiding.odometry.Use(state.time);
@@ -114,7 +128,11 @@ void Apply(const OdometryMotion& motion, const FilterParams& params, State& stat
   const auto& from = state.aiding.scan_place;
   const bool has_begin = from.time == motion.begin && from.has_heading && state.aiding.has_heading;
   if (!motion.is_known) state.aiding.odometry_contradicts_since.reset();
-  if (motion.is_known && has_begin) ApplyMotion(motion, params, state, counts);
+  if (motion.is_known && has_begin) {
+    ApplyMotion(motion, params, state, counts);
+  } else {
+    state.aiding.motion_trial.Break();
+  }
   SetScanPlace(params, state);
 }
 

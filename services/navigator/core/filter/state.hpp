@@ -7,6 +7,7 @@
 
 #include "common/core/utime.hpp"
 #include "services/navigator/core/filter/level.hpp"
+#include "services/navigator/core/filter/motion_trial.hpp"
 #include "services/navigator/core/filter/params.hpp"
 #include "services/navigator/core/pose.hpp"
 
@@ -142,6 +143,7 @@ struct AidingStatus {
 
   ScanPlace scan_place;
   UseTimes odometry;                                // motions that agreed with the state
+  MotionTrial motion_trial;                         // how far they may be believed
   std::optional<Utime> odometry_contradicts_since;  // each since then was refused
   // Fixes or headings contradicted a state that went by the lidar: its motions are not used until then, and next time for so long.
   std::optional<Utime> odometry_refused_until;

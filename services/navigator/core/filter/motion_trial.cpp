@@ -1,0 +1,86 @@
+#include "services/navigator/core/filter/motion_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
+#include "services/navigator/core/filter/state.hpp"
+
+namespace lookout::navigator::filter {
+
+namespace {
+
+// Of two values of a slow error, so long apart: what both have in common says nothing of their difference.
+double VarianceOfDifference(double before, double now, const ErrorModel& slow, double apart_s) {
+  const double common = slow.sd * slow.sd * Exp(-apart_s / slow.time_constant_s);
+  return std::max(0.0, before - common) + std::max(0.0, now - common);
+}
+
+}  // namespace
+
+double MotionTrial::Factor(double factor2) {
+  constexpr double kByChance = 1.0;  // more than the mean of the last squares is off by chance
+  return std::sqrt(std::max(1.0, factor2 - kByChance));
+}
+
+void MotionTrial::Learn(double square, double of_sensors, double of_motions, double& factor2) {
+  constexpr double kMostFactor2 = 1e4;
+  constexpr double kGain = 0.15;  // the last twenty seconds
+  const double found2 = std::clamp((square - of_sensors) / of_motions, 0.0, kMostFactor2);
+  factor2 += kGain * (found2 - factor2);
+}
+
+MotionTrial::Begin MotionTrial::BeginAt(const FilterParams& params, const State& state, bool is_way_measured, bool is_turn_measured) {
+  const auto place = PlanarPlaceOf(params, state);
+  return {state.time,
+          state.nominal.level ? state.nominal.level->origin : GeodeticPlace{},
+          place.p_level_m,
+          place.heading_rad,
+          state.HorizontalVarianceM2(),
+          state.covariance(kRotationUp, kRotationUp),
+          is_way_measured,
+          is_turn_measured};
+}
+
+void MotionTrial::Add(const OdometryMotion& motion, const Eigen::Matrix3d& noise, bool is_way_measured, bool is_turn_measured,
+                      const FilterParams& params, const State& state) {
+  const auto now = BeginAt(params, state, is_way_measured, is_turn_measured);
+  if (begin_) {
+    begin_->is_way_measured = begin_->is_way_measured && is_way_measured && begin_->origin.latitude_deg == now.origin.latitude_deg &&
+                              begin_->origin.longitude_deg == now.origin.longitude_deg;
+    begin_->is_turn_measured = begin_->is_turn_measured && is_turn_measured;
+  }
+  if (!begin_ || (!begin_->is_way_measured && !begin_->is_turn_measured)) {
+    begin_ = now;
+    way_level_m_.setZero();
+    turn_rad_ = way_variance_m2_ = turn_variance_rad2_ = 0.0;
+    return;
+  }
+  const auto [sin, cos] = SinCosOf(begin_->heading_rad + turn_rad_);
+  const auto& way_m = motion.displacement_m;  // forward, port
+  way_level_m_ += Eigen::Vector2d(sin * way_m.x() - cos * way_m.y(), cos * way_m.x() + sin * way_m.y());
+  turn_rad_ += motion.turn_rad;
+  way_variance_m2_ += 0.5 * (noise(0, 0) + noise(1, 1));
+  turn_variance_rad2_ += noise(2, 2);
+  const double apart_s = SecondsBetween(begin_->time, state.time);
+  if (apart_s < kWindowS) return;
+  if (begin_->is_way_measured) {
+    const Eigen::Vector2d off_m = way_level_m_ - (now.p_level_m - begin_->p_level_m);
+    // The direction of the way is that of the heading, at the begin.
+    const double by_heading_m2 = begin_->heading_variance_rad2 * way_level_m_.squaredNorm();
+    const double of_sensors_m2 =
+        VarianceOfDifference(begin_->place_variance_m2, now.place_variance_m2, state.aiding.fix_error_model, apart_s) + 0.5 * by_heading_m2;
+    Learn(0.5 * off_m.squaredNorm(), of_sensors_m2, way_variance_m2_, way_factor2_);
+  }
+  if (begin_->is_turn_measured) {
+    const double off_rad = WrapToPi(turn_rad_ - (now.heading_rad - begin_->heading_rad));
+    const double of_sensors_rad2 =
+        VarianceOfDifference(begin_->heading_variance_rad2, now.heading_variance_rad2, state.aiding.heading_error_model, apart_s);
+    Learn(off_rad * off_rad, of_sensors_rad2, turn_variance_rad2_, turn_factor2_);
+  }
+  begin_.reset();
+  Add(motion, noise, is_way_measured, is_turn_measured, params, state);
+}
+
+}  // namespace lookout::navigator::filter

@@ -1,0 +1,62 @@
+// Whether the lidar's own motions are as good as they say.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "common/core/utime.hpp"
+#include "services/navigator/core/filter/params.hpp"
+#include "services/navigator/core/odometry.hpp"
+
+namespace lookout::navigator::filter {
+
+struct State;
+
+/// What the lidar sees may be a ship that moves, or a bank in steep waves: its motions are then wrong by more than they state, scan after scan the
+/// same way, and each alone looks well. While position or heading are measured, the sum of the motions of kWindowS is therefore held against the way
+/// or the turn of the state. By how much more they differ than both state is remembered, and the stated deviation of later motions counts so many
+/// times: also when a receiver or a compass stops, and nothing else says how far they may be believed (covariance matching: R. K. Mehra, "On the
+/// identification of variances and adaptive Kalman filtering", IEEE Transactions on Automatic Control 15, 1970).
+class MotionTrial {
+ public:
+  static constexpr double kWindowS = 3.0;
+
+  /// @param motion  known, from the place of the last scan
+  /// @param noise   its covariance as it counts before these factors: forward, port, turn
+  /// @param state   at the end of the motion, before it is corrected by it
+  void Add(const OdometryMotion& motion, const Eigen::Matrix3d& noise, bool is_way_measured, bool is_turn_measured, const FilterParams& params,
+           const State& state);
+  /// A motion is missing, or the state was set anew: what was found before stays.
+  void Break() { begin_.reset(); }
+
+  /// How many times the stated deviation of forward and port, and of the turn, counts: 1 or more.
+  double way_factor() const { return Factor(way_factor2_); }
+  double turn_factor() const { return Factor(turn_factor2_); }
+
+ private:
+  struct Begin {
+    Utime time;
+    GeodeticPlace origin;  // of the level frame
+    Eigen::Vector2d p_level_m = Eigen::Vector2d::Zero();
+    double heading_rad = 0.0;
+    double place_variance_m2 = 0.0;  // of east and north, greater of both
+    double heading_variance_rad2 = 0.0;
+    bool is_way_measured = false;
+    bool is_turn_measured = false;
+  };
+  static Begin BeginAt(const FilterParams& params, const State& state, bool is_way_measured, bool is_turn_measured);
+  static double Factor(double factor2);
+  static void Learn(double square, double of_sensors, double of_motions, double& factor2);
+
+  std::optional<Begin> begin_;
+  // Since the begin, by the lidar alone.
+  Eigen::Vector2d way_level_m_ = Eigen::Vector2d::Zero();
+  double turn_rad_ = 0.0;
+  double way_variance_m2_ = 0.0;  // of each axis
+  double turn_variance_rad2_ = 0.0;
+
+  double way_factor2_ = 1.0;
+  double turn_factor2_ = 1.0;
+};
+
+}  // namespace lookout::navigator::filter
