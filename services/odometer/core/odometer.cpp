@@ -84,16 +84,19 @@ Eigen::Matrix3d PlaceCovarianceOf(const Fit& fit, const Eigen::Matrix3d& predict
   const Eigen::Matrix3d added = distorted + PlanarOf(fit.covariance_of_things);
   const Eigen::Matrix3d information = seen.ldlt().solve(Eigen::Matrix3d::Identity());
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(PlanarOf(fit.information_spurious), information);
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  const Eigen::Matrix3d& directions = solver.eigenvectors();
+  const Eigen::Matrix3d scaled = information * directions;
+  Eigen::Matrix3d along = scaled.transpose() * added * scaled;
   for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d direction = solver.eigenvectors().col(i);
-    const Eigen::Vector3d scaled = information * direction;
     const double rest = 1.0 - solver.eigenvalues()[i];
-    const double most = 1.0 / direction.dot(predicted.ldlt().solve(direction));
-    const double variance = rest > 0.0 ? std::min(1.0 / (rest * rest) + scaled.dot(added * scaled), most) : most;
-    covariance += variance * direction * direction.transpose();
+    const double most = 1.0 / directions.col(i).dot(predicted.ldlt().solve(directions.col(i)));
+    along(i, i) += rest > 0.0 ? 1.0 / (rest * rest) : most;
+    // Correlations stay.
+    const double factor = std::sqrt(std::min(along(i, i), most) / along(i, i));
+    along.row(i) *= factor;
+    along.col(i) *= factor;
   }
-  return covariance;
+  return directions * along * directions.transpose();
 }
 
 // Squares of the water in which points lie, and groups of squares that touch, corners too.

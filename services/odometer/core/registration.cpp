@@ -27,10 +27,10 @@ constexpr double kNoiseM = 0.1;
 // Scale of Geman-McClure's function at the end; at first it is a third of the distance that is searched.
 constexpr double kScaleM = 0.15;
 constexpr int kWideIterations = 4;
-// At first a return may lie farther off, the farther it is: in waves a small boat rolls by 15 deg/s, which changes within a scan by as much as a boat
-// of a period of 3 s changes it, so the attitude of the next scan is known to a degree. Three deviations.
+// At first a return may lie farther off, the more so the farther it is: in waves a small boat rolls by 15 deg/s, which changes within a scan by as
+// much as a boat of a period of 3 s changes it, so the attitude of the next scan is known to a degree. Three deviations.
 constexpr double kTiltRad = 0.05;
-constexpr double kFarthestM = 6.0;  // that the map is searched
+constexpr double kFarthestM = 6.0;
 // A return is matched where its difference, as the shape weights it, is below this.
 constexpr double kMatchedM = 0.2;
 
@@ -57,9 +57,11 @@ Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_v
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d arm_m = T_map_vessel.linear() * points[i].p_m;
     const Eigen::Vector3d p_map_m = arm_m + T_map_vessel.translation();
-    const double reach_m = std::min(kFarthestM, search_m + (is_wide ? kTiltRad * points[i].p_m.norm() : 0.0));
+    const double reach_m = is_wide ? std::max(search_m, std::min(kFarthestM, search_m + kTiltRad * points[i].p_m.norm())) : search_m;
     const double scale_m = is_wide ? std::max(kScaleM, reach_m / 3.0) : kScaleM;
-    const auto match = map.Nearest({p_map_m, T_map_vessel.linear() * points[i].normal, points[i].shape}, reach_m);
+    const MapPoint point{p_map_m, T_map_vessel.linear() * points[i].normal, points[i].shape};
+    auto match = map.Nearest(point, search_m);
+    if (!match && reach_m > search_m) match = map.Nearest(point, reach_m);  // a cube of cubes: seldom
     fit.is_near[i] = match.has_value();
     fit.is_matched[i] = false;
     if (!match) continue;
@@ -134,8 +136,7 @@ Fit Register(const std::vector<MapPoint>& points, const Expected& expected, cons
   std::vector<Vector6> pulls;
   Matrix6 curvature = Matrix6::Zero();
   for (int i = 0; i < kMaxIterations; ++i) {
-    const bool is_wide = i < kWideIterations;
-    const auto normal = Sum(points, fit.T_map_vessel, expected.search_m, is_wide, map, pulls, fit);
+    const auto normal = Sum(points, fit.T_map_vessel, expected.search_m, i < kWideIterations, map, pulls, fit);
     fit.information_seen = normal.information;
     fit.information = normal.information + expected.information;
     curvature = fit.information + normal.curvature;
@@ -145,8 +146,8 @@ Fit Register(const std::vector<MapPoint>& points, const Expected& expected, cons
     fit.T_map_vessel.translation() += step.head<3>();
     fit.T_map_vessel.linear() = RotationBy(step.tail<3>()) * fit.T_map_vessel.linear();
     const bool is_still = step.head<3>().norm() < kStepM && step.tail<3>().norm() < kStepRad;
-    if (is_still && !is_wide) break;
-    if (is_still) i = kWideIterations - 1;
+    if (is_still && i >= kWideIterations) break;
+    if (is_still) i = std::max(i, kWideIterations - 1);
   }
   fit.covariance_of_things = CovarianceOfThings(points, pulls, curvature, fit);
   return fit;

@@ -229,6 +229,20 @@ TEST(LidarAid, IsBelievedAsFarAsItWasRightBefore) {
   EXPECT_GT(SdM(astray.At(39.9)), 2.0 * SdM(right.At(39.9)));
 }
 
+// A motion that the gate refuses says nothing of the others.
+TEST(LidarAid, OneWildMotionDoesNotSpoilTheOthers) {
+  OdometryRun run;
+  run.end_s = 60.0;
+  run.gap_begin_s = 30.0;
+  const auto right = run.Sail();
+  run.spoil = [](double t, OdometryMotion& motion) {
+    if (t > 24.95 && t < 25.05) motion.displacement_m.x() += 10.0;
+  };
+  const auto wild = run.Sail();
+  ASSERT_EQ(wild.At(59.9).status, PoseStatus::kCoasting);
+  EXPECT_LT(SdM(wild.At(59.9)), 1.05 * SdM(right.At(59.9)));
+}
+
 // The same of the turn, beside two antennas: the heading stays theirs.
 TEST(LidarAid, ATurnThatDriftsDoesNotLeadTheHeadingAway) {
   OdometryRun run;

@@ -80,17 +80,20 @@ bool ApplyNeeded(const Innovation<3>& stated, bool may_use_way, State& state) {
   // Where the course stands in for a heading, leeway and turning make it wrong by far more than the lidar is.
   const bool is_poor = aiding.heading_source == HeadingSource::kCourse;
   const bool uses_turn = is_poor || !GoesOn(aiding.heading(), state.time) || aiding.heading_error_model.kind == ErrorKind::kTwoAntennas;
+  const auto agrees = [&state](const auto& part) {
+    State corrected = state;
+    return Correct(part, false, corrected).is_accepted;
+  };
   // All of it must agree, also what is not used.
-  State agreeing = state;
-  if (!(may_use_way ? Correct(stated, false, agreeing) : Correct(TurnOf(stated), false, agreeing)).is_accepted) return false;
+  if (!(may_use_way ? agrees(stated) : agrees(TurnOf(stated)))) return false;
   const auto motion = AsTried(stated, aiding.motion_trial);
   if (uses_way) state.aiding.lidar_led_way = state.time;
   if (uses_turn) state.aiding.lidar_led_turn = state.time;
   if (uses_way && uses_turn) {
     Correct(motion, true, state);
-  } else if (uses_way) {
+  } else if (uses_way && agrees(FirstOf<2>(stated))) {
     Correct(FirstOf<2>(motion), true, state);
-  } else if (uses_turn) {
+  } else if (uses_turn && agrees(TurnOf(stated))) {
     Correct(TurnOf(motion), true, state);
   }
   return true;
@@ -108,16 +111,20 @@ void ApplyMotion(const OdometryMotion& motion, const FilterParams& params, State
   const bool may_use_way = state.aiding.scan_place.has_position && state.aiding.has_position;
   const auto innovation = MotionOf(motion, params, state);
   NoteTurn(innovation.residual[2], state);
-  auto& aiding = state.aiding;
-  const bool is_way_measured = may_use_way && GoesOn(aiding.fix, state.time);
-  const bool is_turn_measured = aiding.heading_source != HeadingSource::kCourse && GoesOn(aiding.heading(), state.time);
-  aiding.motion_trial.Add(motion, innovation.noise, is_way_measured, is_turn_measured, params, state);
   if (IsOdometryRefused(state)) return;
+  auto& aiding = state.aiding;
+  const bool is_way_measured = may_use_way && GoesOn(aiding.fix, state.time) && !aiding.fix_refusals.since;
+  const bool is_turn_measured =
+      aiding.heading_source != HeadingSource::kCourse && GoesOn(aiding.heading(), state.time) && !aiding.heading_refusals.since;
+  auto trial = aiding.motion_trial;
+  trial.Add(motion, innovation.noise, is_way_measured, is_turn_measured, params, state);
   if (ApplyNeeded(innovation, may_use_way, state)) {
+    aiding.motion_trial = trial;
     state.aiding.odometry.Use(state.time);
     state.aiding.odometry_contradicts_since.reset();
     return;
   }
+  aiding.motion_trial.Break();
   ++counts.num_gated;
   if (!state.aiding.odometry_contradicts_since) state.aiding.odometry_contradicts_since = state.time;
 }

@@ -19,16 +19,22 @@ double VarianceOfDifference(double before, double now, const ErrorModel& slow, d
 
 }  // namespace
 
-double MotionTrial::Factor(double factor2) {
-  constexpr double kByChance = 1.0;  // more than the mean of the last squares is off by chance
-  return std::sqrt(std::max(1.0, factor2 - kByChance));
+void MotionTrial::Means::Add(double new_square, double new_of_sensors, double new_of_motions) {
+  constexpr double kGain = 0.1;           // the last half minute
+  constexpr double kMostFactor2 = 100.0;  // one window more than this is a fault of something else
+  const double square_within = std::min(new_square, new_of_sensors + kMostFactor2 * new_of_motions);
+  if (!std::isfinite(square_within)) return;
+  if (of_motions == 0.0) *this = {new_of_sensors + new_of_motions, new_of_sensors, new_of_motions};  // as they say, until more is known
+  square += kGain * (square_within - square);
+  of_sensors += kGain * (new_of_sensors - of_sensors);
+  of_motions += kGain * (new_of_motions - of_motions);
 }
 
-void MotionTrial::Learn(double square, double of_sensors, double of_motions, double& factor2) {
-  constexpr double kMostFactor2 = 1e4;
-  constexpr double kGain = 0.15;  // the last twenty seconds
-  const double found2 = std::clamp((square - of_sensors) / of_motions, 0.0, kMostFactor2);
-  factor2 += kGain * (found2 - factor2);
+// What is left of the squares when twice the variance of the sensors and once that of the motions are taken off: so much they exceed their mean by
+// chance.
+double MotionTrial::Means::Factor() const {
+  if (of_motions <= 0.0) return 1.0;
+  return std::sqrt(std::max(1.0, (square - 2.0 * of_sensors - of_motions) / of_motions));
 }
 
 MotionTrial::Begin MotionTrial::BeginAt(const FilterParams& params, const State& state, bool is_way_measured, bool is_turn_measured) {
@@ -71,13 +77,13 @@ void MotionTrial::Add(const OdometryMotion& motion, const Eigen::Matrix3d& noise
     const double by_heading_m2 = begin_->heading_variance_rad2 * way_level_m_.squaredNorm();
     const double of_sensors_m2 =
         VarianceOfDifference(begin_->place_variance_m2, now.place_variance_m2, state.aiding.fix_error_model, apart_s) + 0.5 * by_heading_m2;
-    Learn(0.5 * off_m.squaredNorm(), of_sensors_m2, way_variance_m2_, way_factor2_);
+    way_.Add(0.5 * off_m.squaredNorm(), of_sensors_m2, way_variance_m2_);
   }
   if (begin_->is_turn_measured) {
     const double off_rad = WrapToPi(turn_rad_ - (now.heading_rad - begin_->heading_rad));
     const double of_sensors_rad2 =
         VarianceOfDifference(begin_->heading_variance_rad2, now.heading_variance_rad2, state.aiding.heading_error_model, apart_s);
-    Learn(off_rad * off_rad, of_sensors_rad2, turn_variance_rad2_, turn_factor2_);
+    turn_.Add(off_rad * off_rad, of_sensors_rad2, turn_variance_rad2_);
   }
   begin_.reset();
   Add(motion, noise, is_way_measured, is_turn_measured, params, state);

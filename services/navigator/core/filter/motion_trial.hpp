@@ -21,17 +21,18 @@ class MotionTrial {
  public:
   static constexpr double kWindowS = 3.0;
 
-  /// @param motion  known, from the place of the last scan
+  /// @param motion  known, from the place of the last scan, not refused
   /// @param noise   its covariance as it counts before these factors: forward, port, turn
+  /// @param is_way_measured  fixes come, and none is refused; is_turn_measured: headings likewise
   /// @param state   at the end of the motion, before it is corrected by it
   void Add(const OdometryMotion& motion, const Eigen::Matrix3d& noise, bool is_way_measured, bool is_turn_measured, const FilterParams& params,
            const State& state);
-  /// A motion is missing, or the state was set anew: what was found before stays.
+  /// A motion is missing or refused, or the state was set anew: what was found before stays.
   void Break() { begin_.reset(); }
 
   /// How many times the stated deviation of forward and port, and of the turn, counts: 1 or more.
-  double way_factor() const { return Factor(way_factor2_); }
-  double turn_factor() const { return Factor(turn_factor2_); }
+  double way_factor() const { return way_.Factor(); }
+  double turn_factor() const { return turn_.Factor(); }
 
  private:
   struct Begin {
@@ -45,8 +46,15 @@ class MotionTrial {
     bool is_turn_measured = false;
   };
   static Begin BeginAt(const FilterParams& params, const State& state, bool is_way_measured, bool is_turn_measured);
-  static double Factor(double factor2);
-  static void Learn(double square, double of_sensors, double of_motions, double& factor2);
+  // Means over the last windows: of the squared difference, and of the variances by which sensors and motions explain it.
+  struct Means {
+    double square = 0.0;
+    double of_sensors = 0.0;
+    double of_motions = 0.0;
+
+    void Add(double new_square, double new_of_sensors, double new_of_motions);
+    double Factor() const;
+  };
 
   std::optional<Begin> begin_;
   // Since the begin, by the lidar alone.
@@ -55,8 +63,8 @@ class MotionTrial {
   double way_variance_m2_ = 0.0;  // of each axis
   double turn_variance_rad2_ = 0.0;
 
-  double way_factor2_ = 1.0;
-  double turn_factor2_ = 1.0;
+  Means way_;
+  Means turn_;
 };
 
 }  // namespace lookout::navigator::filter
