@@ -72,7 +72,6 @@ bool GoesOn(const UseTimes& input, Utime time) {
 // The lidar replaces what is not measured, and helps what is measured to centimetres and a fraction of a degree. Nothing else: a large ship that
 // gathers way looks like a shore, and would draw the state away from a receiver or a compass whose slow error is not known, however often these
 // measure.
-//
 // @param stated  as the motion says itself: the gate is of this
 bool ApplyNeeded(const Innovation<3>& stated, bool may_use_way, State& state) {
   const auto& aiding = state.aiding;
@@ -111,8 +110,11 @@ void ApplyMotion(const OdometryMotion& motion, const FilterParams& params, State
   const bool may_use_way = state.aiding.scan_place.has_position && state.aiding.has_position;
   const auto innovation = MotionOf(motion, params, state);
   NoteTurn(innovation.residual[2], state);
-  if (IsOdometryRefused(state)) return;
   auto& aiding = state.aiding;
+  if (IsOdometryRefused(state)) {
+    aiding.motion_trial.Break();
+    return;
+  }
   const bool is_way_measured = may_use_way && GoesOn(aiding.fix, state.time) && !aiding.fix_refusals.since;
   const bool is_turn_measured =
       aiding.heading_source != HeadingSource::kCourse && GoesOn(aiding.heading(), state.time) && !aiding.heading_refusals.since;
