@@ -27,8 +27,8 @@ constexpr double kNoiseM = 0.1;
 // Scale of Geman-McClure's function at the end; at first it is a third of the distance that is searched.
 constexpr double kScaleM = 0.15;
 constexpr int kWideIterations = 4;
-// At first a return may lie farther off, the more so the farther it is: in waves a small boat rolls by 15 deg/s, which changes within a scan by as
-// much as a boat of a period of 3 s changes it, so the attitude of the next scan is known to a degree. Three deviations.
+// At first a return may lie farther off, the more so the farther it is. In waves a small boat with a period of 3 s rolls by 15 deg/s, and its rate
+// changes by 3 deg/s within a scan, so its attitude is known to a degree before the fit. Three deviations.
 constexpr double kTiltRad = 0.05;
 constexpr double kFarthestM = 6.0;
 // A return is matched where its difference, as the shape weights it, is below this.
@@ -95,6 +95,7 @@ Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_v
 Matrix6 CovarianceOfThings(const std::vector<MapPoint>& points, const std::vector<Vector6>& pulls, const Matrix6& curvature, const Fit& fit) {
   // Where the returns differ by as much as the scale, the pulls hardly change with the place; what is left of that is uncertain, too.
   constexpr double kLeastCurvature = 0.2;
+  const Matrix6 nothing_known = 1e6 * Matrix6::Identity();  // the place is then known as well as it was predicted
   CubeIndex index;
   std::vector<Vector6> of_squares;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -109,11 +110,11 @@ Matrix6 CovarianceOfThings(const std::vector<MapPoint>& points, const std::vecto
   for (const auto& pull : of_squares) scatter += pull * pull.transpose();
   // The eigenvectors make the information the identity, and the curvature diagonal.
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(curvature, fit.information);
-  if (solver.info() != Eigen::Success) return Matrix6::Zero();
+  if (solver.info() != Eigen::Success) return nothing_known;
   const Vector6 inverse = solver.eigenvalues().cwiseMax(kLeastCurvature).cwiseInverse();
   const Matrix6 sensitivity = solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
   const Matrix6 covariance = sensitivity * scatter * sensitivity;
-  return covariance.allFinite() ? covariance : Matrix6::Zero();
+  return covariance.allFinite() ? covariance : nothing_known;
 }
 
 }  // namespace

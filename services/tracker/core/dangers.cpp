@@ -336,8 +336,7 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
                   .place_map_m = place.position_map_m};
     add_approach(track.approach, params.limit_m, danger);
     // Where a moving thing goes is a guess, and beams that find nothing there say so. What stands may be hidden.
-    const bool moves = !track.velocity_mps.isZero(0.0);
-    if (moves) danger.probability *= track.existence_probability;
+    if (!track.velocity_mps.isZero(0.0)) danger.probability *= track.existence_probability;
     // A boat in her berth gains nothing by being told of a piece of it.
     const bool is_of_berth = is_own_still && proof != nullptr && proof->MayBePiece(track.id);
     const auto doubt = [&track, time, is_of_berth](Danger& of) {

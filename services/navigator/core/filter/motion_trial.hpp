@@ -23,7 +23,8 @@ class MotionTrial {
 
   /// @param motion  known, from the place of the last scan, not refused
   /// @param noise   its covariance as it counts before these factors: forward, port, turn
-  /// @param is_way_measured  fixes come, and none is refused; is_turn_measured: headings likewise
+  /// @param is_way_measured   fixes come, and none is refused
+  /// @param is_turn_measured  headings come, and none is refused
   /// @param state   at the end of the motion, before it is corrected by it
   void Add(const OdometryMotion& motion, const Eigen::Matrix3d& noise, bool is_way_measured, bool is_turn_measured, const FilterParams& params,
            const State& state);
