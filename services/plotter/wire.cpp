@@ -42,9 +42,16 @@ bool AreNumbersGood(const track_t& track) {
          IsWithinOrUnknown(track.tcpa_s, -kMostTcpaS, kMostTcpaS) && IsWithinOrUnknown(track.cpa_probability, 0.0, 1.0);
 }
 
-// Ids of the watch run from -1 down.
+// Precondition: the cause is one of these. Ids of the watch run from -1 down.
 Cause CauseOf(const alert_t& alert) {
-  return alert.cause == alert_t::CAUSE_WATCH && alert.id > 0 ? Cause::kPartUnseen : static_cast<Cause>(alert.cause);
+  switch (alert.cause) {
+    case alert_t::CAUSE_GUARD_ZONE:
+      return Cause::kGuardZone;
+    case alert_t::CAUSE_CLOSEST_APPROACH:
+      return Cause::kClosestApproach;
+    default:
+      return alert.id > 0 ? Cause::kPartUnseen : Cause::kWatch;
+  }
 }
 
 Sound SoundOf(const alerts_t& message, const alert_t& alert) {

@@ -38,7 +38,7 @@ static_assert(static_cast<int>(Encounter::kOvertaken) == track_t::ENCOUNTER_OVER
 static_assert(kNoTrack == tracks_t::PIECE_NO_TRACK);
 static_assert(static_cast<int>(AlertCause::kGuardZone) == alert_t::CAUSE_GUARD_ZONE);
 static_assert(static_cast<int>(AlertCause::kClosestApproach) == alert_t::CAUSE_CLOSEST_APPROACH);
-static_assert(static_cast<int>(AlertCause::kWatch) == alert_t::CAUSE_WATCH);
+static_assert(static_cast<int>(AlertCause::kWatch) == alert_t::CAUSE_WATCH && kNumCauses == alert_t::CAUSE_WATCH);
 static_assert(static_cast<int>(AlertLevel::kCaution) == alert_t::LEVEL_CAUTION);
 static_assert(static_cast<int>(AlertLevel::kWarning) == alert_t::LEVEL_WARNING);
 static_assert(static_cast<int>(AlertState::kActive) == alert_t::STATE_ACTIVE);

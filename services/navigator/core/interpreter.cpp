@@ -231,9 +231,17 @@ Reading Interpreter::ReadUnderstood(const Item& item, Source& source, const Sent
     case SentenceType::kMavGps:
       source.autopilot_gps = Accuracy{item.time, sentence};
       return {};
-    default:
+    case SentenceType::kXdr:
+    case SentenceType::kTntHtm:
+    case SentenceType::kHdt:
+    case SentenceType::kPashr:
+    case SentenceType::kMagnetic:
+    case SentenceType::kPsatHpr:
+    case SentenceType::kVnYmr:
+    case SentenceType::kVnImu:
       return ReadAttitude(item, source, sentence);
   }
+  return {};
 }
 
 // Time of a sentence without one; nullopt: it waited in a queue for an unknown time. The first behind a timed one of its input was as late as that.

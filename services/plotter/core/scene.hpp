@@ -34,7 +34,8 @@ enum class TargetState { kAcquiring, kTracking, kLost };
 // Numbers of both are those of alert_t.
 enum class Level : std::int32_t { kNone = 0, kCaution = 1, kWarning = 2 };
 enum class NoticeState : std::int32_t { kActive = 1, kAcknowledged = 2, kRectified = 3, kCleared = 4 };
-// kPosition is the plotter's own; kPartUnseen is of WATCH, too: nobody looks into a part of the guard zone.
+// Their numbers are those of the alerts' identifiers in sentences, so they stay. kPosition is the plotter's own; kPartUnseen is of WATCH, too: nobody
+// looks into a part of the guard zone.
 enum class Cause : std::int32_t { kGuardZone = 1, kClosestApproach = 2, kWatch = 3, kPosition = 4, kPartUnseen = 5 };
 
 enum class Sound { kQuiet, kSounds, kSilenced };

@@ -169,13 +169,13 @@ class Alerts {
     void ForgetLooks();
   };
   // The danger of a thing in a scan, by cause; nullptr: none.
-  using Evidence = std::array<const Danger*, 3>;
+  using Evidence = std::array<const Danger*, kNumCauses>;
   struct Lost {
     Utime since;
     bool is_hidden = false;
   };
   struct Entry {
-    std::array<Latch, 3> causes;  // by their number, less one
+    std::array<Latch, kNumCauses> causes;  // by their number, less one
     Latch warning;
     std::optional<Alert> alert;
     bool is_over = false;           // its end was told

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace lookout::tracker {
 
 // Numbers of both are those of the wire.
 enum class AlertCause : std::int32_t { kGuardZone = 1, kClosestApproach = 2, kWatch = 3 };
+inline constexpr std::size_t kNumCauses = 3;
 enum class AlertLevel : std::int32_t { kCaution = 1, kWarning = 2 };
 
 // As the thing of an alert or a danger, beside the ids of tracks: land with all that stands beside it; and things in the guard zone that are no track

@@ -1,6 +1,7 @@
 #include "services/lidar/core/models/table.hpp"
 
 #include <array>
+#include <stdexcept>
 
 #include "services/lidar/core/models/hesai.hpp"
 #include "services/lidar/core/models/ouster.hpp"
@@ -65,9 +66,10 @@ std::unique_ptr<PacketReader> MakeReader(OtherModel model, const std::string& be
       return MakeHesai(HesaiModel::kPandar40p, beam_text);
     case OtherModel::kPandar64:
       return MakeHesai(HesaiModel::kPandar64, beam_text);
-    default:
+    case OtherModel::kOuster:
       return std::make_unique<OusterReader>(ParseOusterMetadata(beam_text));
   }
+  throw std::logic_error("MakeReader: no such model");
 }
 
 }  // namespace lookout::lidar
