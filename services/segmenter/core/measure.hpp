@@ -1,4 +1,4 @@
-// The fifth step: the measurements of each segment.
+// The measurements of each segment.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// The first step: which returns are looked at, and where they are.
+// Which returns of a scan are looked at, and where they are: where both methods begin.
 #pragma once
 
 #include <Eigen/Geometry>

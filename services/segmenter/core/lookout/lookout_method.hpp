@@ -20,7 +20,7 @@
 
 namespace lookout::segmenter {
 
-/// Confidence and kind of a group, beside its returns.
+/// Probabilities of a group. Segmenter (Decide) makes confidence and kind of them.
 struct GroupFacts {
   float land_probability = 0.0F;
   float thing_probability = 0.0F;  // that it is a thing, and not spray, rain, foam or a glint
@@ -41,14 +41,18 @@ class LookoutMethod {
   /// Cost: about proportional to the returns and cells. Allocates nothing once it has seen a scan of that size.
   void Group(const Scan& scan, std::span<const Return> returns);
 
-  /// The steps of Group, in this order; lookout-fit reads its rows between them. 1. Tight pieces.
+  /// Group calls FindPieces, then kNumMerges times FindPairs and Merge, then MeasureGroups and Judge. lookout-fit and the table `merges` of
+  /// lookout-export call them one by one.
+  ///
+  /// Links returns to tight pieces.
   void FindPieces(const Scan& scan, std::span<const Return> returns);
-  /// 2. kNumMerges times: features of the pairs of pieces (valid until the pieces change),
+  /// Features of the pairs of pieces; valid until the pieces change.
   std::span<const PiecePair> FindPairs(std::size_t merge);
-  /// 3. and pieces merged by the log odds of these pairs.
+  /// Merges pieces by the log odds of these pairs.
   void Merge(std::size_t merge, std::span<const PiecePair> pairs);
-  /// 4. Features of each piece.
+  /// Features of each piece: after the last round a piece is a group.
   std::span<const PieceFeatures> MeasureGroups();
+  /// Probabilities of each group.
   void Judge(std::span<const PieceFeatures> features);
 
   const ScanGrid& grid() const { return grid_; }

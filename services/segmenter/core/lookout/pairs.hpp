@@ -68,9 +68,8 @@ struct PiecePair {
 
 class PairFinder {
  public:
-  /// A scan gives no more pairs in a round, and none are looked for with more looks at columns and at pieces behind and beside. Normal scans stay
-  /// below: in rain and fog they take 2600 pairs and 180 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
-  /// hold.
+  /// A round finds at most kMostPairs pairs, with at most kMostLooks looks at columns and at pieces behind and beside. A scan that needs more gets a
+  /// shorter reach, in this round and its later ones. Normal scans do not: rain and fog take 2600 pairs and 180 000 looks.
   static constexpr std::size_t kMostPairs = 6000;
   static constexpr std::int64_t kMostLooks = 400'000;
 

@@ -1,4 +1,4 @@
-// The first step of the lookout method: pieces so tight that nothing passes between their returns.
+// Tight pieces: returns so close that nothing passes between them.
 #pragma once
 
 #include <cstdint>
