@@ -90,12 +90,13 @@ struct Surroundings {
 ///
 /// Time goes by the message time of scans. An alert comes up, or becomes a warning, when 3 of the last 5 scans say so (one, where a known track
 /// enters the guard zone). It ends, or becomes a caution, when none has said so for clear_s (1 s where the thing opens abaft) and 5 whole scans. A
-/// scan that is not whole clears nothing, but its dangers count; when no scan has shown the danger for kHiddenS, all scans clear. Scans older than 1
-/// s count neither way. After a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
+/// scan that is not whole clears nothing, but its dangers count; when no scan has shown the danger for kHiddenS, all scans clear. A scan counts
+/// neither way after 1 s. After a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
 ///
 /// A thing whose track has ended is lost. Its alert stays where the thing was seen last: for clear_s if beams looked there and found nothing, or if
-/// the place is abaft by now; else for kHiddenS, since the thing may be hidden. A thing that is found again within kSameS, beside its last place or
-/// where it would be by now, has the same alert, acknowledged only if it is near and soon. If it has an alert of its own already, the two become one.
+/// the place is abaft by now; else for kHiddenS, since the thing may be hidden. A thing that is found again within kSameS, by its track id, beside
+/// its last place or where it would be by now, has the same alert, acknowledged only if it is near and soon. If it has an alert of its own already,
+/// the two become one.
 ///
 /// Nothing in the guard zone stays unnoticed because its track id changes from scan to scan: each thing in the zone without an alert that holds
 /// counts for the alert of kUnnamed too, unless another alert of the zone is active anyway. So when 3 of the last 5 scans show anything in the zone,
