@@ -22,7 +22,7 @@ std::string EffectiveConfig(const std::filesystem::path& config_folder, std::vec
 /// their functions, C library, GLIBC_TUNABLES, compiler. A value that cannot be read is "unknown".
 std::string MachineText();
 
-/// The same of a given /proc/cpuinfo.
+/// This text for a given /proc/cpuinfo.
 ///
 /// @param cpuinfo  of x86 ("model name", "flags") or arm ("CPU part", "Features"); the first processor counts
 std::string ProcessorText(const std::string& cpuinfo);
