@@ -1,4 +1,4 @@
-// The sightings of a scan: its pieces, joined as the ledger decides.
+// The sightings of a scan: its pieces, merged as the ledger decides.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct Sightings {
   std::vector<std::int32_t> of_segment;
 };
 
-/// Joins the pieces of the scan as the ledger decides. Where the scan has no labels, its segments are the sightings.
+/// Merges the pieces of the scan as the ledger decides. Where the scan has no labels, its segments are the sightings.
 /// @param tracks  predicted to the scan
 /// @param ledger  nullptr: segments stay as the scan has them
 Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger* ledger);
