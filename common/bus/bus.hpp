@@ -27,13 +27,13 @@ struct ChannelTraffic {
   std::int64_t num_messages = 0;
   std::int64_t num_undecodable = 0;
   std::int64_t num_lost = 0;
-  WholeCount scans;                               // of them, or messages of a channel without parts: those that came whole, those that did not
-  std::int64_t num_refused = 0;                   // of a second publisher of the channel
-  std::optional<StreamGuard::Time> second_heard;  // Bus::GuardNow() when one was last heard
+  WholeCount scans;                               // scans (of a channel without parts: messages) that came whole, and that did not
+  std::int64_t num_refused = 0;                   // messages of a second publisher of the channel
+  std::optional<StreamGuard::Time> second_heard;  // Bus::GuardNow() when a second publisher was last heard
   std::chrono::nanoseconds total_handling_time{0};
   std::deque<std::chrono::microseconds> handling_times;  // of the latest messages, at most kMaxTimes
 
-  /// A message that was sent: the time of its measurement, and when it went out.
+  /// A message that was sent: time of its measurement, and when it went out.
   struct Sent {
     std::int64_t utime_us = 0;
     std::chrono::steady_clock::time_point time;

@@ -37,7 +37,7 @@ struct DatagramPolicy {
 /// So LCM's receiver cannot be made to read or write outside of its buffers: its sums stay below 32 bits, its strings end.
 std::vector<sock_filter> DatagramFilter(const DatagramPolicy& policy);
 
-/// The same for the bus at this address: of this computer only with a time-to-live of 0.
+/// The filter for the bus at this address; with a time-to-live of 0 only this computer counts.
 std::vector<sock_filter> DatagramFilter(const MulticastAddress& address);
 
 }  // namespace lookout::bus

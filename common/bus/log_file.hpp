@@ -27,7 +27,7 @@ inline constexpr std::uint32_t kLogSyncWord = 0xEDA1DA01;
 inline constexpr std::size_t kMaxLogChannelBytes = 63;
 
 /// Greatest part of an event that is held at a time, and greatest event that the recorder writes. A log of others may have larger events (a camera on
-/// the same bus), up to the 2 GB of LCM's format: the reader gives so much of it as its beginning, and the rest by ReadData.
+/// the same bus), up to the 2 GB of LCM's format: of these the reader gives this much as the beginning, and the rest by ReadData.
 inline constexpr std::size_t kMaxLogDataBytes = 16U * 1024 * 1024;
 
 struct LogEvent {
@@ -39,7 +39,7 @@ struct LogEvent {
   std::size_t num_data_bytes = 0;   // of the whole message
 };
 
-/// The same in the memory of the reader: it stands until the next call.
+/// A LogEvent without a copy, in the memory of the reader: it holds until the next call.
 struct LogEventView {
   Utime time;
   std::string_view channel;
@@ -61,11 +61,11 @@ class LogReader {
   /// @return the next whole event; nullopt at the end. Damaged stretches are skipped to the next event and counted.
   std::optional<LogEvent> Next();
 
-  /// The same without a copy. Of events on a channel that is not wanted the bytes are not read: they come without. Of one that is larger than
+  /// Next without a copy. An event on a channel that is not wanted comes without its bytes, which are not read. Of an event larger than
   /// kMaxLogDataBytes only the beginning comes.
   std::optional<LogEventView> NextView(const std::function<bool(std::string_view channel)>& is_wanted);
 
-  /// The same, and of an event only the beginning is read.
+  /// NextView, with the beginning of each event alone.
   /// @param num_wanted  how many of an event's bytes are wanted, by its channel
   std::optional<LogEventView> NextHead(const std::function<std::size_t(std::string_view channel)>& num_wanted);
 
@@ -102,7 +102,7 @@ class LogReader {
 /// @param channel  not empty: LCM's reader stops at an event without name
 void AppendLogEvent(std::vector<std::uint8_t>& log, std::int64_t number, Utime time, std::string_view channel, Bytes bytes);
 
-/// The same of an event of which `bytes` are the beginning only.
+/// Appends an event of which `bytes` are only the beginning.
 void AppendLogEventHead(std::vector<std::uint8_t>& log, std::int64_t number, Utime time, std::string_view channel, Bytes bytes,
                         std::size_t num_data_bytes);
 

@@ -25,7 +25,7 @@ struct TypeText {
   std::string text;
 };
 
-/// Of all types of package lookout, by name: so that a log can be read when its version is long gone.
+/// Texts of all types of package lookout, by name: so that a log can be read when the version that wrote it is long gone.
 const std::vector<TypeText>& TypeTexts();
 
 /// SHA-256, hexadecimal, over "type fingerprint" lines.

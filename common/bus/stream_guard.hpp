@@ -27,12 +27,12 @@ bool IsOfType(const Channel& channel, std::uint64_t fingerprint);
 /// Not cryptographic. The same on every computer.
 std::uint64_t DigestOf(Bytes bytes);
 
-/// Of a message of package lookout that is not decoded.
+/// Place of a message that is not decoded.
 ///
 /// @return nullopt when the bytes are not of the channel's type
 std::optional<StreamPlace> PlaceOf(const Channel& channel, Bytes bytes);
 
-/// Of a decoded one.
+/// Place of a decoded message.
 template <typename T>
 StreamPlace PlaceOf(const T& message, Bytes bytes) {
   StreamPlace place{.seq = message.seq, .utime_us = message.utime_us, .digest = DigestOf(bytes)};
@@ -45,8 +45,8 @@ StreamPlace PlaceOf(const T& message, Bytes bytes) {
   return place;
 }
 
-/// Whether the channel has one publisher, that numbers its messages: not HEALTH, whose publishers number for themselves, and not what tells of the
-/// machine or of a simulation; and not ALERT_ACK.
+/// Whether the channel has one publisher, which numbers its messages: not HEALTH, ALERT_ACK and the like, which have several, and not channels that
+/// tell of the machine or of a simulation.
 constexpr bool IsGuarded(const Channel& channel) { return channel.is_replayed && !HasSeveralPublishers(channel); }
 
 /// Whether each message of its publisher was measured after the one before: not where several sensors share a channel, or a time.
@@ -90,13 +90,13 @@ class StreamGuard {
   /// @return nullopt when they stay; else how many are missing among them
   std::optional<std::int64_t> Release(Time now);
 
-  /// The same at the end of the input, after which nothing can show whose they were.
+  /// Release at the end of the input: nothing can show any more to which publisher the held messages belong.
   std::optional<std::int64_t> ReleaseAtEnd();
 
   /// Whether messages are held.
   bool is_holding() const { return num_held_ > 0; }
 
-  /// One that is held has no room any more.
+  /// There is no room any more: refuses the oldest held message.
   void RefuseOldestHeld(Time now);
 
   /// Messages that were refused, among them lone ones whose number is corrupt.

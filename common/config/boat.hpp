@@ -51,7 +51,7 @@ struct BoatRemark {
 /// is not set.
 std::vector<BoatRemark> RemarksOnBoat(const BoatFacts& boat);
 
-/// The same as comments of a text config, a line each: "# boat.txtpb: ...", "# boat.txtpb: warning: ...".
+/// These remarks as comments of a text config, a line each: "# boat.txtpb: ...", "# boat.txtpb: warning: ...".
 std::string RemarksAsComments(const BoatFacts& boat);
 
 }  // namespace lookout::config

@@ -24,7 +24,7 @@ std::string EffectiveTextOf(const std::filesystem::path& folder, const std::stri
 
 /// The text that holds the values of a file.
 struct ValuesText {
-  std::filesystem::path file;  // that is there: the file itself, or boat.txtpb
+  std::filesystem::path file;  // where the values stand: the file itself, or boat.txtpb
   std::string text;            // of a section: all else is blank, so that lines count as in the file
   std::string prefix = {};     // of the names of its fields: "tracker."
   int first_line = 1;

@@ -63,7 +63,7 @@ inline constexpr std::size_t kMaxConfigBytes = 4UL * 1024 * 1024;  // the larges
 /// `message` is then not to be used. The caller checks relations between fields.
 void LoadText(const std::filesystem::path& file, google::protobuf::Message& message);
 
-/// The same from text; `name` stands in for the path in faults.
+/// LoadText from a text; `name` stands in for the path in faults.
 void ParseText(const std::string& text, const std::string& name, google::protobuf::Message& message);
 
 /// The values of a file of a boat's folder: of the file, else of its section in boat.txtpb, else the defaults of the schema. A file that boat.proto
@@ -73,7 +73,7 @@ void ParseText(const std::string& text, const std::string& name, google::protobu
 /// wrong name would go unnoticed
 void LoadOfBoat(const std::filesystem::path& folder, const std::string& file_name, google::protobuf::Message& message);
 
-/// The same, as a value.
+/// LoadOfBoat, as a value.
 template <typename Message>
 Message Load(const std::filesystem::path& folder, const std::string& file_name) {
   Message message;

@@ -15,15 +15,15 @@
 
 namespace lookout {
 
-/// By what a sector is known to be covered.
+/// How it is known that a sector is covered.
 enum class Cover : std::uint8_t {
   kNo,
-  kNear,     // half of its beams or more end on the own boat or below the least range, nearer than CoverWatch::kNearM
+  kNear,     // half of its beams or more end on the own boat or below the least range, and nearer than CoverWatch::kNearM
   kOwnGone,  // the lidar saw the own boat in it for long, and sees neither that nor anything else
   kDark,     // the lidar saw much in the scans before, and there is no return in all of this one
 };
 
-/// Whether a lidar has become dark: it saw much in each of the last scans, and nothing in this one. What goes out of reach does so by and by.
+/// Whether a lidar has become dark: it saw much in each of the last scans, and nothing in this one. Things that get out of reach do so one by one.
 class Darkness {
  public:
   /// Returns of a scan.
@@ -44,7 +44,7 @@ class Darkness {
 struct CoverParams {
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
   double min_range_m = 0.0;                   // of the segmenter
-  Sector field_of_view = {};                  // the same, azimuths of the lidar
+  Sector field_of_view = {};                  // of the segmenter, azimuths of the lidar
   Eigen::AlignedBox3d own_vessel_box_m = {};  // vessel frame; empty = none
 };
 
@@ -69,7 +69,7 @@ class CoverWatch {
   explicit CoverWatch(const CoverParams& params);
 
   void Begin() { now_ = {}; }
-  /// @param azimuth_offset_rad  [rings] to be added to the azimuth of the column, less than a turn
+  /// @param azimuth_offset_rad  [rings] to be added to the azimuth of the column, less than a circle
   /// @param elevation_rad       [rings]
   /// @param range_m             [rings] of the nearest return; 0 = none
   void AddColumn(double azimuth_rad, std::span<const float> azimuth_offset_rad, std::span<const float> elevation_rad, std::span<const float> range_m);
@@ -77,21 +77,21 @@ class CoverWatch {
   /// In place of a scan of which the returns did not come: nothing is covered in it, and after some seconds nothing is told any more.
   void Skip(Utime time);
 
-  /// Of the scan that ended last.
-  /// @param azimuth_rad  of a beam, offset included; from minus a turn on
+  /// Whether the beam's sector is covered in the scan that ended last.
+  /// @param azimuth_rad  of a beam, offset included; from minus a circle on
   bool Covers(double azimuth_rad) const { return sectors_[IndexOf(azimuth_rad)].cover != Cover::kNo; }
   /// Where a beam of that scan ends: one that shows nothing in a covered sector ends at the lidar, and nobody knows what is behind.
   /// @param range_m  0 = no return
   float EndOf(double azimuth_rad, float range_m) const { return range_m <= 0.0F && Covers(azimuth_rad) ? kAtLidarM : range_m; }
   bool covers_any() const { return covers_any_; }
-  /// Whether a sector is covered that looked before, in this run: what was seen there may still be there.
+  /// Whether a sector is covered that looked before in this run: things that were seen there may still be there.
   bool covers_anew() const { return covers_anew_; }
 
-  /// What has lasted, clockwise from the lidar's x axis.
+  /// Covers that have lasted, clockwise from the lidar's x axis.
   std::vector<CoveredPart> parts() const;
   std::int64_t num_lasting() const { return num_lasting_; }  // sectors
   bool is_all_round() const { return is_all_round_; }
-  /// A number that grows each time that 30 deg come up which were not told in the last 10 s. 0: nothing was.
+  /// Grows by 1 each time that 30 deg are covered which were not told in the last 10 s. 0: nothing was told yet.
   std::int64_t num_told() const { return num_told_; }
   /// No return for kNothingS, and nothing tells why: the lasers may be off, the window covered, or the water flat and empty.
   bool sees_nothing() const { return sees_nothing_; }
@@ -100,8 +100,8 @@ class CoverWatch {
   struct Counts {
     int num_shots = 0;
     int num_returns = 0;
-    int num_own = 0;   // of these, of the own boat or below the least range
-    int num_near = 0;  // of these, nearer than kNearM
+    int num_own = 0;   // returns of the own boat, or below the least range
+    int num_near = 0;  // of these, returns nearer than kNearM
   };
   struct State {
     Cover cover = Cover::kNo;
@@ -109,7 +109,7 @@ class CoverWatch {
     double own_share = 0.0;     // of scans in which the own boat was seen there
     double cover_share = 0.0;   // of the last seconds
     bool is_looked_at = false;  // the lidar fires there, and the segmenter takes it
-    bool has_looked = false;    // what was seen there may still be there
+    bool has_looked = false;    // it looked earlier in this run: things that were seen there may still be there
     bool was_told = false;
     double unfired_s = 0.0;  // since the lidar fired there last
     double covered_s = 0.0;  // since it was not covered last

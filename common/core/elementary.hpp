@@ -31,7 +31,7 @@ struct SinCos {
 /// k_cos.c).
 SinCos SinCosOf(double angle_rad);
 
-/// The same of an angle in degrees: exact at whole quarters of a turn, where zeros have either sign. Error: below 2 ulp.
+/// SinCosOf an angle in degrees: exact at whole quarters of a circle, where zeros have either sign. Error: below 2 ulp.
 SinCos SinCosOfDegrees(double angle_deg);
 
 inline double Sin(double angle_rad) { return SinCosOf(angle_rad).sin; }

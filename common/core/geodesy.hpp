@@ -29,7 +29,7 @@ class LocalFrame {
 
   /// Error: below 1e-8 m for such places, and up to 1000 km height; below 1e-7 m up to 100 000 km. On the earth's axis the longitude is that of the
   /// meridian on which rounding puts it; at the very pole of a datum at longitude 0 it is 0. At the centre of the earth the answer is the north pole.
-  /// Of what is not a number every part is NaN. Source: B. Bowring, "The accuracy of geodetic latitude and height equations", Survey Review 28
+  /// If any part is NaN, all parts of the answer are. Source: B. Bowring, "The accuracy of geodetic latitude and height equations", Survey Review 28
   /// (1985), its step taken three times.
   GeodeticPlace Reverse(const Eigen::Vector3d& p_map_m) const;
 

@@ -42,7 +42,7 @@ class InputWatch {
   /// "no SEGMENTS for 3 s"; empty while they come.
   std::string Complaint() const { return is_silent() ? Text(name_, silence()) : std::string(); }
 
-  /// Of several in one sentence: "no SEGMENTS, POSE for 3 s", with the time of the one that was heard last.
+  /// One sentence for several inputs: "no SEGMENTS, POSE for 3 s", with the time of the silent input that was heard last.
   static std::string Complaint(std::span<const InputWatch> inputs) {
     std::string names;
     auto least = std::chrono::microseconds::max();

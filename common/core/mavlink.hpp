@@ -25,12 +25,12 @@ struct MavlinkFrame {
   std::string_view bytes;    // the whole frame, with its signature if it has one
 };
 
-/// What stands at the begin of some bytes.
+/// A message, or the lack of one, at the begin of some bytes.
 struct MavlinkLook {
   enum class Verdict {
-    kNone,         // no message that is looked for begins here
-    kUnfinished,   // one may begin here, and goes on behind the last byte
-    kBadChecksum,  // one would begin here, but for its checksum
+    kNone,         // no message of the kinds that are looked for begins here
+    kUnfinished,   // a message may begin here, and goes on behind the last byte
+    kBadChecksum,  // a message would begin here, but for its checksum
     kFrame,
   };
   Verdict verdict = Verdict::kNone;

@@ -27,7 +27,7 @@ struct Datum {
   /// Not of a relative frame. The map frame; an unknown height counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of
   /// distance.
   LocalFrame Map() const;
-  /// The same map frame, bit for bit. A datum that is not known equals none.
+  /// Whether both are the same map frame, bit for bit. An unknown datum equals none.
   bool IsSameAs(const Datum& other) const;
 };
 
@@ -73,7 +73,7 @@ class PoseHistory {
   /// Cost: constant on an even grid; logarithmic in the length of the history where poses are missing.
   std::optional<Pose> At(Utime time) const;
 
-  /// The same, of a vessel in the map frame of `datum`: in another it is not placed. Costs a third of At.
+  /// The place at `time` in the map frame of `datum`: is_placed is false if the poses are in another map frame. Costs a third of At.
   std::optional<Place> PlaceAt(Utime time, const Datum& datum) const;
 
   /// @return the datum in force at `time`: of the latest pose at or before it; unknown when there is none

@@ -17,7 +17,7 @@ std::string PrintableLines(std::string_view text);
 /// @return whether it is one line of UTF-8 with none of the control characters above
 bool IsPrintableLine(std::string_view text);
 
-/// Of a name that people give to a thing (order_t).
+/// Greatest length of a name that people give to a thing (order_t).
 inline constexpr std::size_t kMostNameBytes = 40;
 
 /// @return whether the text is a readable name: a printable line of 1 to kMostNameBytes bytes with a visible character and no character that is

@@ -11,7 +11,7 @@ namespace lookout::io {
 /// Bytes that any user may still write where `path` is, or will be: the nearest folder above it that exists. -1 = not known.
 std::int64_t FreeBytes(const std::filesystem::path& path);
 
-/// Of the file system where `path` is, or will be. -1 = not known.
+/// Size of the file system where `path` is, or will be. -1 = not known.
 std::int64_t DiskBytes(const std::filesystem::path& path);
 
 /// Whether both are, or will be, on one file system.
@@ -28,8 +28,8 @@ class DiskReserve {
   /// Free bytes that a stopped writer needs to go on.
   std::int64_t bytes_to_go_on() const { return reserve_bytes_ + reserve_bytes_ / kShareToGoOn + kMoreToGoOn; }
 
-  /// How much another than the recorder may hold in all.
-  /// @param held_bytes  that it holds now, and could give back
+  /// How many bytes a program other than the recorder may hold in all.
+  /// @param held_bytes  bytes that it holds now, and could give back
   std::int64_t BytesForOthers(std::int64_t free_bytes, std::int64_t held_bytes) const { return free_bytes + held_bytes - bytes_to_go_on(); }
 
   /// "12 MB are free, 1000 MB of the disk are kept in reserve"

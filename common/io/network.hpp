@@ -37,7 +37,7 @@ bool ReachesThisComputer(const std::string& text);
 /// Addresses of this computer's interfaces that are up, loopback among them, each once.
 std::vector<IpAddress> OwnAddresses();
 
-/// Of this computer alone: 127.0.0.0/8 or ::1.
+/// Whether the address is of this computer alone: 127.0.0.0/8 or ::1.
 bool IsLoopback(const IpAddress& address);
 
 bool IsInterfaceUp(const std::string& interface);

@@ -44,7 +44,7 @@ class OutputFile {
   void Write(Bytes bytes);
   void Write(std::string_view text);
 
-  /// The same as a stream, which throws what Write throws. The stream formats as the "C" locale does.
+  /// Write by a stream, which throws as Write does, and formats as the "C" locale does.
   std::ostream& stream();
 
   /// Hands the written bytes to the kernel: a reader of FILE.partial finds them. @throws as Write
@@ -54,7 +54,7 @@ class OutputFile {
   /// @throws as Write; std::runtime_error where the output is no regular file of its own
   void OverwriteStart(std::string_view text);
 
-  /// For a library that writes by itself. Nothing may be written by the above then.
+  /// For a library that writes by itself. Then Write and the stream may not be used.
   int descriptor() const;
 
   /// All is written: brings it to the disk, as FILE.partial still. After it Commit fails only where the file cannot be moved to its place.

@@ -58,7 +58,7 @@ inline constexpr Fault kObstaclesSize = "obstacles_refused_size";              /
 inline constexpr std::array kObstaclesFaults{kObstaclesTime,   kObstaclesParts,      kObstaclesCount, kObstaclesId,
                                              kObstaclesNumber, kObstaclesCovariance, kObstaclesCode,  kObstaclesSize};
 
-inline constexpr Fault kAckTime = "acks_refused_time";      // of it or of its alert: does not exist
+inline constexpr Fault kAckTime = "acks_refused_time";      // its time, or that of its alert, does not exist
 inline constexpr Fault kAckId = "acks_refused_id";          // 0: no alert has it
 inline constexpr Fault kAckSource = "acks_refused_source";  // more than 64 bytes
 inline constexpr std::array kAckFaults{kAckTime, kAckId, kAckSource};

@@ -60,7 +60,7 @@ inline constexpr std::array kAisSender{Word{ais_ship_t::SENDER_UNKNOWN, "unknown
                                        Word{ais_ship_t::SENDER_CLASS_B, "class_b"}, Word{ais_ship_t::SENDER_AID, "aid"},
                                        Word{ais_ship_t::SENDER_BASE, "base"},       Word{ais_ship_t::SENDER_AIRCRAFT, "aircraft"}};
 
-/// What a ship of AIS is to the lidar.
+/// Whether the lidar sees a ship of AIS.
 inline constexpr std::array kAisState{Word{ais_ship_t::STATE_NOT_IN_SIGHT, "not_in_sight"}, Word{ais_ship_t::STATE_TRACKED, "tracked"},
                                       Word{ais_ship_t::STATE_UNSURE, "unsure"}, Word{ais_ship_t::STATE_AIS_ONLY, "ais_only"}};
 

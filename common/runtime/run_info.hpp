@@ -9,9 +9,8 @@
 
 namespace lookout::runtime {
 
-/// @return RUN_INFO without time and number: version, host, schema, the effective text of every file in force (config::FilesInForce), by name,
-/// "machine.txt"
-///         (MachineText), and the texts of the wire types ("lcmtypes/x_t.lcm")
+/// @return RUN_INFO without time and number: version, host, schema, the effective text of every file in force (config::FilesInForce) by name,
+///         "machine.txt" (MachineText), and the texts of the wire types ("lcmtypes/x_t.lcm")
 /// @throws config::ConfigError
 run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& config_folder);
 
@@ -22,7 +21,7 @@ std::string EffectiveConfig(const std::filesystem::path& config_folder, std::vec
 /// their functions, C library, GLIBC_TUNABLES, compiler. A value that cannot be read is "unknown".
 std::string MachineText();
 
-/// The same of a given /proc/cpuinfo.
+/// The lines of MachineText that tell of the processor, by the text of /proc/cpuinfo.
 ///
 /// @param cpuinfo  of x86 ("model name", "flags") or arm ("CPU part", "Features"); the first processor counts
 std::string ProcessorText(const std::string& cpuinfo);

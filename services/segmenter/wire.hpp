@@ -20,8 +20,7 @@ std::optional<Scan> ToScan(const std::vector<lidar_scan_t>& parts);
 /// The segments of a scan in parts: labels as the scan was split, segments in order wherever they fit behind them, then in further parts.
 ///
 /// @param max_message_bytes  of an encoded message; the labels of a part fit, since those of its scan did. Where the pieces of a part do not, all
-/// parts
-///                           go without pieces
+///                           parts go without pieces
 std::vector<segments_t> ToMessages(const Scan& scan, const Segments& segments, int max_message_bytes);
 
 }  // namespace lookout::segmenter

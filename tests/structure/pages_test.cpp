@@ -94,7 +94,7 @@ TEST(Pages, AndCodeUseTheTermsOfTheField) {
   }
 }
 
-// "From packet to obstacle" in CONTRIBUTING.md: each row names a file, and something that stands in it.
+// Tables of CONTRIBUTING.md, as "From packet to alert": each row of three columns names a file, and something that stands in it.
 TEST(Pages, TheWalkForNewcomersNamesWhatIsThere) {
   const std::regex row(R"(^\| ([^|]+) \| `([^`]+)` \| `([^`]+)` \|$)");
   std::istringstream page(ReadFile(kSources / "CONTRIBUTING.md"));

@@ -39,8 +39,7 @@ class CloudScans {
   /// @param name     of the sensor, for LIDAR_SCAN.model
   /// @param stamp_ns of the cloud, as it is to be used
   /// @return the parts of a scan, in order; empty where the cloud cannot be one. A direction is off by half a column at most where points have
-  /// neither
-  ///         firing nor place; a range is rounded to a unit of 2 mm, or as much as the farthest point needs
+  ///         neither firing nor place; a range is rounded to a unit of 2 mm, or as much as the farthest point needs
   std::vector<lidar_scan_t> Convert(const RosPointCloud& cloud, std::int64_t stamp_ns, const std::string& model);
 
   /// Labels of the cells of the last scan: of all its parts, in their order; without any where its cloud had none.

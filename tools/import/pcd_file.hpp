@@ -45,8 +45,7 @@ class PcdReader {
 
   /// @param bytes  outlive this
   /// @throws PointFileError for a header that lacks, repeats or contradicts something, a viewpoint that is not the origin, and compressed points that
-  /// do
-  ///         not unpack to what the header says; with Cut::kRefused for too few or too many bytes
+  ///         do not unpack to what the header says; with Cut::kRefused for too few or too many bytes
   PcdReader(std::string_view bytes, std::string name, Cut cut);
 
   const std::string& name() const { return name_; }

@@ -37,8 +37,7 @@ struct Inspection {
 
 /// Reads as far as is needed to know what to run: of logs perhaps all of them.
 /// @param show_share  is told how much is done, 0 to 1; may be empty
-/// @throws RequestError as MakeLogPlan; std::runtime_error when captures and logs are mixed, or the
-/// logs do not hold what is needed
+/// @throws RequestError as MakeLogPlan; std::runtime_error when captures and logs are mixed, or the logs do not hold what is needed
 Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request, const std::function<void(double)>& show_share = {});
 
 /// Messages that were read and that were left out.

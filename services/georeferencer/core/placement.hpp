@@ -65,8 +65,7 @@ Eigen::Matrix2d RelativeCovariance(const Eigen::Vector3d& p_vessel_m, const Pose
 ///
 /// @param datum  origin of the map frame; poses in another do not count
 /// @return status kOk when the pose is placed at the segment's time and at that of each corner of both; else kPoseTimeout when one of these times
-/// lies
-///         after the newest pose and `has_timed_out`, else kVesselFrameOnly. Without a pose the vessel counts as level.
+///         lies after the newest pose and `has_timed_out`, else kVesselFrameOnly. Without a pose the vessel counts as level.
 /// Error: below 1 mm for points nearer than 200 m (property test georeferencer_round_trip).
 Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Datum& datum, bool has_timed_out, const PlacementParams& params);
 

@@ -32,8 +32,7 @@ struct CsvRow {
 CsvRow ReadCsvRow(std::string_view line, const CsvColumns& columns);
 
 /// @param text  "2026-08-29T10:00:00.123Z"; also with a blank for the T, without a fraction, with an offset ("+02:00", "+0200"), and with neither Z
-/// nor
-///              offset: UTC
+///              nor offset: UTC
 std::optional<Utime> ParseIsoTime(std::string_view text);
 
 }  // namespace lookout::navigator

@@ -60,9 +60,8 @@ struct ServerParts {
 /// requests (by HTTP), openings (of WebSockets), answers (out of recordings), acknowledgements, orders, frames_sent, frames_replaced (a newer one
 /// came before there was room), frames_dropped (the server's own thread did not keep up); refused_host (421), refused_origin (403), refused_token
 /// (401), refused_full (503), refused_request (other refusals), connections_silent (asked for nothing), connections_let_go (closed for new ones),
-/// connections_refused (too many), requests_late and answers_late (cut off), client_faults
-/// (what a WebSocket should not have said), clients_silent (let go); accept_faults (no descriptor was left, say), faults (of the server: an
-/// exception, a map that cannot be read).
+/// connections_refused (too many), requests_late and answers_late (cut off), client_faults (a WebSocket said something that it should not have said),
+/// clients_silent (let go); accept_faults (no descriptor was left, say), faults (of the server: an exception, a map that cannot be read).
 using ServerCounts = std::map<std::string, std::int64_t, std::less<>>;
 
 class Server {

@@ -22,9 +22,8 @@ class Link {
   /// dropped once its buffer is full; a message without a receiver is counted.
   virtual void Send(std::string_view message) = 0;
 
-  /// Received messages, complete: lines without CR LF of a stream, datagrams, texts of a WebSocket; of a
-  /// binary stream pieces, as they come. At most a bounded number waits; the rest is
-  /// counted.
+  /// Received messages, complete: lines without CR LF of a stream, datagrams, texts of a WebSocket; of a binary stream pieces, as they come. At most
+  /// a bounded number waits; the rest is counted.
   virtual std::optional<std::string> Receive() { return std::nullopt; }
 
   /// Bytes that may be sent now without falling behind: of a serial port by its speed; of a connection the free room of its buffer here, of several

@@ -1,4 +1,4 @@
-// The fifth step: the measurements of each segment.
+// The measurements of each segment.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ struct HullCorner {
   std::int32_t time_us = 0;  // of the return at this corner, since ScanHead::time, rounded down
 };
 
-/// How far one scan lets a segment be believed.
+/// Whether one scan is enough to believe in a segment.
 enum class Confidence : std::int32_t { kTentative = 1, kSure = 2 };
 
 /// Why a segment is tentative. Bits as on the wire.
@@ -45,7 +45,7 @@ struct Segment {
   std::int32_t grounds = 0;  // bits of Ground; 0 where it is sure
   SegmentKind kind = SegmentKind::kObstacle;
   // 0 to 1; NaN where the method states none, as the paper's.
-  float thing_probability = std::numeric_limits<float>::quiet_NaN();  // that it is no clutter
+  float thing_probability = std::numeric_limits<float>::quiet_NaN();  // to be no clutter
   float land_probability = std::numeric_limits<float>::quiet_NaN();
   std::int32_t num_points = 0;
   Point centroid;
@@ -63,8 +63,8 @@ struct Segment {
   std::int32_t min_reflectivity = 0;
   float mean_reflectivity = 0.0F;
   std::int32_t max_reflectivity = 0;
-  float seen_share = 1.0F;            // of the columns from its first to its last; in the others something nearer hides it, or nothing came back
-  std::vector<HullCorner> hull;       // counter-clockwise, 1 to kMaxHullCorners
+  float seen_share = 1.0F;       // share of the columns between its ends that show it; in the rest something nearer hides it, or nothing came back
+  std::vector<HullCorner> hull;  // counter-clockwise, 1 to kMaxHullCorners
   std::vector<HullCorner> waterline;  // of land: its nearest return in each direction, from left to right as the lidar sees it, at most
                                       // kMaxWaterlineCorners; empty for others
 };

@@ -12,7 +12,7 @@ namespace lookout::segmenter {
 /// Joins the components of a cluster, leaves out those that are too small, and numbers the rest in the order of their first return.
 class Numbering {
  public:
-  /// @param cluster_of_component  [components.count] any numbers below components.count; empty: each is one by itself
+  /// @param cluster_of_component  [components.count] any numbers below components.count; empty: each component is a cluster by itself
   /// @param max_segments          where there are more, the largest are kept; of equals, the first
   /// Allocates nothing once it has seen as many returns and components.
   void Number(const Groups& components, std::span<const std::int32_t> cluster_of_component, int min_points, std::int32_t max_segments);

@@ -1,4 +1,4 @@
-// The first step: which returns are looked at, and where they are.
+// Which returns of a scan are looked at, and where they are: where both methods begin.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -60,8 +60,8 @@ struct ClassifiedReturns {
   std::vector<std::int16_t> label;  // [cells] minus the reason where a return is not looked at, else 0
 };
 
-/// Sorts out the returns that are out of range, else out of the field of view, else of the own vessel, and places the others. Of these, sets apart
-/// the returns that repeat another of their shot.
+/// Sorts out the returns that are out of range, else out of the field of view, else of the own vessel, and places all others. Of the placed returns
+/// it sets those apart that repeat another of their shot.
 ///
 /// In dual return a shot with one echo is reported twice. Ranges are compared in whole range units, and only those of placed returns: a return beside
 /// a sorted-out one is no repeat, so that no obstacle at a limit is lost. Point of a return at range r, azimuth a (of its column, plus the offset of

@@ -24,7 +24,7 @@ constexpr std::size_t kWatch = static_cast<std::size_t>(AlertCause::kWatch) - 1;
 // An alert without a track is shown for so long after its thing was seen last.
 constexpr std::chrono::milliseconds kShownFor{500};
 constexpr double kPassedS = 1.0;
-// What is far ahead is now on the boat's way and now beside it, as she yaws in the waves: of the time that was left it stands this share longer.
+// A thing far ahead drifts on and off the boat's way as she yaws. Its alert stands on for this share of the time to closest approach.
 constexpr double kWaversShare = 0.3;
 
 // Unknown values come last.

@@ -20,19 +20,19 @@ constexpr double kHeadingSdRad = 0.0035;  // 0.2 deg, of a compass with two ante
 // At first the visible share is unknown: so many times that error, less and less over some seconds.
 constexpr double kFirstOutline = 1.5;
 constexpr double kFirstOutlineS = 2.0;
-// A part of a thing is never seen, however long it is looked at: overhangs, low parts, parts that do not reflect.
+// Some of a thing is never seen, however long it is looked at: overhangs, low parts, parts that do not reflect.
 constexpr double kNeverSeenSdM = 0.05;
 constexpr double kNeverSeenSdPerSize = 0.06;
-// More of it comes into sight at first: by so much and by a share of its size, in the time since then; as if it moved.
+// At first more and more of a thing comes into sight, as if it moved: by so much, and by a share of its size, in the time since it was seen first.
 constexpr double kShownSdM = 0.1;
 constexpr double kShownSdPerSize = 0.1;
 constexpr double kLeastAgeS = 0.3;
 constexpr double kLeastSideSdM = 0.005;
 constexpr double kSideWanderM2PerS = 0.01 * 0.01;      // outlines change as a boat swings
 constexpr double kStandingWanderM2PerS = 0.03 * 0.03;  // a moored thing swings, and positions by GNSS wander
-constexpr double kAccelerationMps2 = 0.12;             // standard deviation over a second, of one that keeps its speed
-constexpr double kManoeuvreMps2 = 0.8;                 // of one that does not; small craft
-constexpr double kManoeuvreSds = 3.0;                  // of the mean of a second, from where it is expected
+constexpr double kAccelerationMps2 = 0.12;             // standard deviation over a second, of a thing that keeps its speed
+constexpr double kManoeuvreMps2 = 0.8;                 // of a thing that does not; small craft
+constexpr double kManoeuvreSds = 3.0;                  // mean distance of a second from the expected place: then it manoeuvres
 constexpr double kManoeuvreS = 1.0;
 // Turn rates: small boats turn by up to 20 deg/s, for some seconds.
 constexpr double kTurnRateRadps = 0.1;
@@ -49,18 +49,18 @@ constexpr double kJitterGain = 0.1;
 constexpr double kMotionMemoryS = 3.0;
 constexpr double kMovingPriorLogOdds = -2.0;
 constexpr double kGreatestLogOdds = 12.0;
-// Motion must stand out by itself, and goes on while the evidence is half as much.
+// The speed must be so many deviations above 0 for motion to begin, and half as many for it to go on.
 constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
 constexpr double kSpeedSdsOn = 1.5;
 constexpr double kMovesAfterS = 0.6;
-// Deviation of the velocity of a thing that is not where it was expected. It rather shows another part, since waves show one and hide the other, than
-// moves; a thing that goes on the same way moves. Chosen on seeds 21 to 24 of the own scenes.
+// Deviation that is added to the velocity of a thing that is not where it was expected. Rather than move, it shows another part, since waves show one
+// part and hide another; a thing that jumps the same way twice moves. Chosen on seeds 21 to 24 of the own scenes.
 constexpr double kJumpMps = 0.1;
 constexpr double kGoesOnMps = 1.0;
 constexpr double kJumpsWithinS = 3.0;
 constexpr double kLoosenedS = 1.0;
-// Of a track that goes on as another track.
+// Deviation that is added to the velocity of a track that goes on as another track.
 constexpr double kOtherTrackMps = 0.3;
 
 constexpr std::size_t kMostParts = 3;  // beside the one that is seen

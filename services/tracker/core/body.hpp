@@ -13,22 +13,22 @@ namespace lookout::tracker {
 /// Which sides of a seen outline are edges of the thing, and not edges of its visible part.
 struct Sides {
   Eigen::Vector2d from_m = Eigen::Vector2d::Zero();  // the lidar, on the map
-  bool is_left_hidden = false;                       // seen from there
+  bool is_left_hidden = false;                       // as seen from the lidar
   bool is_right_hidden = false;
-  double before_s = 0.0;  // the state's time, by so much: a moving thing was not yet where it is
+  double before_s = 0.0;  // how long before the state's time the outline was seen: a moving thing has gone on since
 };
 
-/// A thing that stands, or moves and turns. The outline is anchored at the position: the hidden far side is as it was seen before, or assumed.
+/// A thing that stands, or moves and turns. Its outline is counted from its position: the hidden far side is as it was seen before, or assumed.
 ///
-/// A measurement is compared side by side: how far the seen outline reaches in each direction from which it is seen, against how far the known one
-/// does from the predicted position. So a larger or smaller visible part is no motion, and the side that is seen does not draw the centre towards the
-/// boat. Where the sides do not agree, the measurement counts the less.
+/// A measurement is compared side by side: in each direction from which the thing is seen, the reach of the seen outline against that of the known
+/// outline at the predicted position. So a larger or smaller visible part is no motion, and the side that is seen does not draw the centre towards
+/// the boat. Where the sides do not agree, the measurement counts less.
 ///
-/// A thing has parts that are seen by turns, as the bow of a kayak and its paddler. Each has its own sides, counted from the one position. A
-/// measurement is compared with the part that it fits best, so a change of part is no motion, and the outline is that around all parts. A part that
-/// was not seen for 6 s, while others were, is forgotten.
+/// A thing has parts that are seen by turns, as the bow of a kayak and its paddler. Each part has its own sides, counted from the one position. A
+/// measurement is compared with the part that it fits best, so a change of part is no motion. The outline is that around all parts. A part that was
+/// not seen for 6 s, while others were, is forgotten.
 ///
-/// The visible part changes over seconds, not from scan to scan: errors of the outline last, for the covariance to be honest.
+/// The visible part changes over seconds, not from scan to scan. So errors of the outline last, and the covariance counts them as lasting.
 class Body {
  public:
   /// @param seen_m  outline, map
@@ -37,41 +37,41 @@ class Body {
 
   void Predict(double dt_s);
 
-  /// The measurement of the position by a seen outline: its distance from the predicted one, with covariance; large along directions that it does not
-  /// show.
+  /// The measurement of the position by a seen outline: its distance from the predicted position, with a covariance that is large along directions
+  /// that the outline does not show.
   struct Shift {
     Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();
     Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
-    double off = 0.0;  // squared, in deviations of the predicted position and of the shift itself: 2 in the mean
+    double off = 0.0;  // square of the shift, in deviations of the predicted position and of the shift: 2 in the mean
 
-    double misfit = 0.0;   // mean square of the residual of each side, in its deviations: 1 in the mean where it is the same thing
-    bool is_part = false;  // a smaller part is seen than is known
+    double misfit = 0.0;   // mean square of what is left of each side, in its deviations: 1 in the mean where it is the same thing
+    bool is_part = false;  // less of the thing is seen than is known
   };
   Shift ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const;
 
-  /// @param grows  false where the seen outline may hold another thing too: then it moves nothing but the position
+  /// @param grows  false where the seen outline may hold another thing too: then it changes the position alone, not the sides
   void Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows);
 
   /// The whole outline, at the predicted position.
   std::vector<Eigen::Vector2d> Outline() const;
   double SeenShare() const;
-  /// The frame fixed to the thing, on the map: it moves and turns with it, also where the middle of its known outline does not.
+  /// The frame fixed to the thing, on the map: it moves and turns with the thing, even where the middle of the known outline does not.
   Eigen::Isometry2d Frame() const;
-  /// Motion of that frame since the thing was seen first.
+  /// Motion of Frame() since the thing was seen first.
   double moved_m() const { return (Frame().translation() - first_m_).norm(); }
 
-  /// All positions may have moved together by so much: the own position became better known.
+  /// The own position became better known: all positions may be off together, by this variance.
   void Loosen(double variance_m2);
-  /// The map was elsewhere by so much.
+  /// The own position was off by so much, and all places on the map with it.
   void Translate(const Eigen::Vector2d& by_m);
-  /// It was seen together with land only: where it comes to rest is not seen, so its velocity fades.
+  /// The thing was seen together with land only: nobody sees where it comes to rest, so its velocity fades.
   void Fade(double dt_s);
   /// A segment beside it belongs to it, too.
   void Include(const std::vector<Eigen::Vector2d>& outline_m);
-  /// It was followed as another track before: its place and size stay, its motion is taken from that track, less sure.
+  /// The thing was followed as another track before: place and size stay, the motion is that of the other track, less sure.
   void MoveAs(const Body& before);
   /// Another part of the same thing is seen: place and motion stay, since another part says nothing of them.
-  /// @param has_jumped  it was not where it should be: the velocity is less sure
+  /// @param has_jumped  the part is not where the thing was expected: the velocity is less sure
   void AddPart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped);
   /// Forgets all parts but the one that was seen last.
   void KeepSeenPart() { others_.clear(); }
@@ -94,23 +94,23 @@ class Body {
     bool is_seen = false;
   };
   using Reaches = std::array<Side, kDirections>;
-  // A part of a thing that is seen by itself, as its bow, or its crew.
+  // A part of a thing that is seen by itself, as the bow, or the crew.
   struct Part {
     Reaches sides;
-    double unseen_s = 0.0;  // for how long others were seen
+    double unseen_s = 0.0;  // for how long other parts were seen, and this one not
   };
   struct Measured;
   Measured Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const;
   Measured MeasuredBy(Measured measured, const Reaches& known) const;
   Shift ShiftOf(const Measured& measured, const Reaches& known, const Eigen::Matrix2d& noise_m2, double range_m) const;
-  // The other part that is seen; nullopt: the one that was seen last.
+  // Index in others_ of the part that is seen; nullopt: the part that was seen last.
   std::optional<std::size_t> PartOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const;
   Reaches WholeSides() const;
   void ForgetParts(double dt_s);
   struct First;
   First FirstOutline(const Measured& measured, const std::vector<Eigen::Vector2d>& seen_m) const;
   Eigen::Vector2d position_m() const;
-  Eigen::Vector2d middle_m() const;  // of the outline, from the position
+  Eigen::Vector2d middle_m() const;  // from the position to the middle of the outline
   Directions SideDirections() const;
   Support SupportFrom(const std::vector<Eigen::Vector2d>& corners_m) const;  // from the origin of the map
   void Center();
@@ -122,29 +122,29 @@ class Body {
   void TakePart(const Measured& measured, double dt_s);
 
   Reaches sides_;                                          // of the part that was seen last, from the position
-  std::vector<Part> others_;                               // parts that were seen before
+  std::vector<Part> others_;                               // parts that were seen earlier
   Eigen::Matrix2d turned_ = Eigen::Matrix2d::Identity();   // of the sides' directions, from those of the compass: a boat that turns takes them along
   Eigen::Vector2d first_m_ = Eigen::Vector2d::Zero();      // the position at first
-  Eigen::Vector2d last_jump_m_ = Eigen::Vector2d::Zero();  // when an outline did not fit: from where it was expected
+  Eigen::Vector2d last_jump_m_ = Eigen::Vector2d::Zero();  // of the last new part: from the expected middle to the seen one
   double since_jump_s_ = 0.0;
-  bool goes_on_ = false;                                        // it jumped the same way before
+  bool goes_on_ = false;                                        // the last two jumps went the same way
   Eigen::Matrix2d frame_turned_ = Eigen::Matrix2d::Identity();  // of the thing's own frame, more than the sides' directions
-  Eigen::Vector2d centered_m_ = Eigen::Vector2d::Zero();        // of the position, by Center() since the beginning, in the thing's own frame
+  Eigen::Vector2d centered_m_ = Eigen::Vector2d::Zero();        // way of the position by Center() since the beginning, in the thing's own frame
   Eigen::Vector2d standing_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d standing_m2_ = Eigen::Matrix2d::Zero();
   Motion moving_ = Motion::Zero();
   MotionCovariance moving_covariance_ = MotionCovariance::Zero();
-  double log_likelihood_ratio_ = 0.0;  // of moving over standing, of the last seconds
-  double moving_probability_ = 0.0;    // below one half where the speed does not stand out
-  bool prefers_moving_ = false;        // which of the two says where it is
-  bool stands_out_ = false;            // the speed, from its deviation
-  double moved_s_ = 0.0;               // for how long without a break
+  double log_likelihood_ratio_ = 0.0;  // of moving over standing, by the last seconds
+  double moving_probability_ = 0.0;    // one half at most where the speed does not stand out
+  bool prefers_moving_ = false;        // the moving filter says where the thing is, not the standing one
+  bool stands_out_ = false;            // the speed is well above its deviation
+  double moved_s_ = 0.0;               // for how long without a break it moved
   double since_update_s_ = 0.0;
   double parts_s_ = 0.0;                                  // for how long only parts were seen
-  std::array<double, kDirections> parts_reach_m_{};       // of these, from the position
+  std::array<double, kDirections> parts_reach_m_{};       // how far those parts reach, from the position
   double age_s_ = 0.0;                                    // since the outline was first seen
-  Eigen::Vector2d mean_off_m_ = Eigen::Vector2d::Zero();  // of the moving one, of the last second
-  // Jitter of the measured position from scan to scan, by its second differences: steady motion is none.
+  Eigen::Vector2d mean_off_m_ = Eigen::Vector2d::Zero();  // of the measured position from the moving filter's, mean of the last second
+  // Jitter of the measured position from scan to scan, by second differences: steady motion has none.
   std::array<Eigen::Vector2d, 2> last_measured_{};
   int num_measured_ = 0;
   double jitter_m2_ = 0.0;

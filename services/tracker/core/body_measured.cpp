@@ -118,7 +118,7 @@ Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Side
 }
 
 std::optional<std::size_t> Body::PartOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const {
-  constexpr double kOfLess = 2.0;  // less of one part is rather all of another
+  constexpr double kOfLess = 2.0;  // where only some of a known part would be seen: another part seen whole fits better
   const auto off_by = [&](const Reaches& known) {
     const auto shift = ShiftOf(MeasuredBy(measured, known), known, noise_m2, range_m);
     return shift.off + shift.misfit + (shift.is_part ? kOfLess : 0.0);

@@ -14,10 +14,10 @@ struct Body::Measured {
   std::array<double, kDirections> variance_m2{};
   std::array<Kind, kDirections> kind{};
   Eigen::Vector2d sight = Eigen::Vector2d::Zero();
-  // A smaller part is seen than is known, from end to end, by so much; 0: all of it is.
+  // By how much the seen part is shorter than the known outline, from end to end; 0: all of it is seen.
   double short_m = 0.0;
 
-  // Whether the measurement says where a side lies. A part lies in the outline: it says so only where it reaches beyond.
+  // Whether the measurement says where side i lies. A part that lies in the outline says so only where it reaches beyond it.
   bool Tells(std::size_t i, double beyond_m) const { return short_m > 0.0 ? beyond_m > 0.0 : kind[i] == Kind::kEdge; }
 };
 
@@ -28,7 +28,7 @@ struct Body::First {
 };
 
 /// Uncertainty of a place from scan to scan.
-/// @param covariance_m2  of its position relative to the own boat
+/// @param covariance_m2  of the place relative to the own boat
 Eigen::Matrix2d NoiseOf(const Eigen::Matrix2d& covariance_m2, double range_m);
 
 }  // namespace lookout::tracker

@@ -7,19 +7,19 @@
 
 namespace lookout::tracker {
 
-/// False segments per square metre and scan, in sectors about the own boat: its wake, spray at the bow and rain near the lidar stay where they are to
-/// it. A drop is no buoy: segments of many returns are counted apart from those of few, by powers of two.
+/// False segments per square metre and scan, in sectors about the own boat: its wake, spray at the bow and rain near the lidar keep their place
+/// relative to it. A drop is no buoy: segments of many returns are counted apart from those of few, by powers of two.
 class ClutterMap {
  public:
   void Begin() { counts_ = {}; }
   /// @param place_vessel_m  x forward, y port
   void Add(const Eigen::Vector2d& place_vessel_m, int num_returns) { counts_[ClassOf(num_returns)][IndexOf(place_vessel_m)] += 1.0; }
-  /// One scan is over. Memory of some 5 s.
+  /// Ends a scan. Counts are averaged over some 5 s.
   void End(double dt_s);
 
-  /// Of false segments that have about as many returns, or more.
+  /// Density of false segments that have about as many returns, or more.
   double DensityAt(const Eigen::Vector2d& place_vessel_m, int num_returns) const;
-  /// A scan, within 100 m.
+  /// False segments of a scan, within 100 m.
   double total() const;
 
  private:

@@ -46,8 +46,8 @@ struct ScanObstacles {
   std::int32_t flags = 0;
   bool is_whole = true;  // all parts came
   Datum datum;
-  std::vector<Seen> seen;               // those with a place on the earth and a covariance
-  std::vector<VesselOutline> outlines;  // of all
+  std::vector<Seen> seen;               // obstacles with a place on the earth and a covariance
+  std::vector<VesselOutline> outlines;  // of all obstacles
 };
 
 /// LIDAR_SCAN of one scan.
@@ -56,7 +56,7 @@ struct ScanBeams {
   bool is_whole = true;
   Sweep sweep;  // its labels are not known yet
   int num_returns = 1;
-  std::vector<std::uint8_t> nearest;  // [columns x rings] which return of the shot range_m is
+  std::vector<std::uint8_t> nearest;  // [columns x rings] index of the shot's return that is the nearest, as in sweep.range_m
 };
 
 /// SEGMENTS of one scan: labels and pieces.
@@ -72,19 +72,19 @@ struct ScanLabels {
 struct GatheredScan {
   ScanInput input;
   std::int64_t raw_seq = 0;
-  bool is_anew = false;  // lidar or navigator began anew: nothing of before holds
+  bool is_anew = false;  // lidar or navigator began anew: earlier tracks and poses count no more
   std::vector<VesselOutline> outlines;
 
   ScanKey key() const { return {input.time, input.seq}; }
 };
 
-/// A scan goes on, in the order of OBSTACLES, once POSE has reached its last shot and LIDAR_SCAN and SEGMENTS have come or cannot come any more,
-/// since a later scan of theirs has. What goes on depends on the order within each channel, not on how they interleave, as long as host time is kept
-/// out (AdvanceTo is not called), time does not go back, and the channels are ahead of each other by less than kMaxWaiting scans and
+/// A scan is released, in the order of OBSTACLES, once POSE has reached its last shot, and LIDAR_SCAN and SEGMENTS have come, or cannot come any
+/// more, since a later scan of that channel has. The released scans depend on the order within each channel, not on how the channels interleave, as
+/// long as AdvanceTo is not called (host time), time does not go back, and no channel is ahead of another by kMaxWaiting scans or
 /// PoseHistory::kLength.
 ///
-/// It begins with the first scan of which it has heard all: every part of every channel, and POSE since before its first shot. Another one that
-/// listens since long gives the same from that scan on.
+/// It begins with the first scan of which it has heard all: every part of every channel, and POSE since before its first shot. A gatherer that has
+/// listened longer releases the same scans from that one on.
 class Gatherer {
  public:
   /// Scans that wait: at 10 a second 6 s; 20 MB of a VLP-16.
@@ -98,14 +98,15 @@ class Gatherer {
   /// @param timeout  live only: how long a scan waits, by the host's clock
   Gatherer(const Sources& sources, std::chrono::microseconds timeout) : sources_(sources), timeout_(timeout) {}
 
-  /// Each of these returns the scans that can go on now.
+  /// Each Add returns the scans that are released by it.
   std::vector<GatheredScan> Add(ScanObstacles obstacles);
   std::vector<GatheredScan> Add(ScanBeams beams);
   std::vector<GatheredScan> Add(ScanLabels labels);
   /// @param is_new_run  navigator began anew with this one
   std::vector<GatheredScan> Add(const Pose& pose, bool is_new_run);
 
-  /// Live only: a scan that has waited too long goes on with what is there, and one that waits for POSE alone while POSE has not come for so long.
+  /// Live only: releases a scan that has waited longer than the timeout, with the messages that came; and a scan that waits for POSE alone when POSE
+  /// has not come for as long.
   std::vector<GatheredScan> AdvanceTo(Utime host_time);
 
   /// End of input.
@@ -157,15 +158,15 @@ class Gatherer {
   std::chrono::microseconds timeout_;
   PoseHistory poses_;
   std::optional<Utime> oldest_pose_;   // since when POSE is heard
-  std::deque<Utime> navigator_began_;  // anew, and no scan has come to it yet
+  std::deque<Utime> navigator_began_;  // anew, later than the last released scan
   Stream<ScanBeams> beams_;
   Stream<ScanLabels> labels_;
   std::deque<Waiting> waiting_;
   std::optional<ScanKey> newest_;  // of OBSTACLES
   bool has_begun_ = false;
-  bool is_anew_ = false;  // not told to a scan yet
+  bool is_anew_ = false;  // to be told with the next released scan
   std::optional<Utime> host_time_;
-  std::optional<Utime> pose_arrival_;  // host time of the last, or from when on it is known
+  std::optional<Utime> pose_arrival_;  // of the last POSE, by host time; of one before host time was known, when that became known
   std::optional<Utime> last_timeout_;
   Counts<kCountNames> counts_;
 };

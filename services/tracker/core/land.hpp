@@ -14,9 +14,9 @@
 
 namespace lookout::tracker {
 
-/// Cells of half a metre that hold evidence of land: more with each scan that sees land there, less with each that sees something else, and less
-/// where beams pass below the height of earlier returns. So one scan that takes a boat for land does not make it land, nor one that takes a bank for
-/// a boat a boat; and a thing that left leaves no land behind.
+/// Cells of half a metre that hold evidence of land: more with each scan that sees land there, less with each scan that sees something else, and less
+/// where beams pass below the height of earlier returns. So one scan that takes a boat for land makes no land, one scan that takes a bank for a boat
+/// makes no boat, and a thing that left leaves no land behind.
 ///
 /// Memory: 2 kB for each tile of 16 m x 16 m, at most kMostTiles and those that one scan adds (8 MB); beyond, the farthest from the boat are
 /// forgotten.
@@ -30,16 +30,16 @@ class LandMemory {
   /// One segment of one scan: each cell counts once, however many returns lie in it.
   /// @param tops_m  [places] heights over the water; empty where they are not known: then the cells do not become free by being looked through
   void Add(std::span<const Eigen::Vector2d> places_m, std::span<const double> tops_m, Said said);
-  /// Beams that passed where land is remembered. At most kMostLooked cells a scan, one tile after the other: each is asked for within a second or
-  /// two.
+  /// Looks for beams that passed where land is remembered: at most kMostLooked cells a scan, one tile after the other, so that each cell has its turn
+  /// within a second or two.
   void LookThrough(const Sight& sight);
 
   /// Whether land is remembered there, or in a cell beside it.
   bool IsLand(const Eigen::Vector2d& place_m) const;
-  /// Share of some places that are land; of more than `most` every so many is asked for.
+  /// Share of the places that are land; of more than `most` places, at most so many, evenly spread, count.
   double Share(std::span<const Eigen::Vector2d> places_m, std::size_t most) const;
 
-  /// Cells of land with free cells before them, seen from a place, at most `range_m` from it, nearest first, at most `most`.
+  /// Cells of land with free cells before them, as seen from `near_m`: at most `most`, at most `range_m` off, the nearest first.
   std::vector<Eigen::Vector2d> Waterline(const Eigen::Vector2d& near_m, double range_m, std::size_t most) const;
 
   void Forget(const Eigen::Vector2d& own_m);

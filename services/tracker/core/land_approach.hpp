@@ -12,15 +12,15 @@
 namespace lookout::tracker {
 
 struct LandApproach {
-  ClosestApproach approach;  // of the place that is likely to come too near first; of the likeliest where none is likely
-  double limit_m = 0.0;      // below which it is too near
+  ClosestApproach approach;  // to the place that is likely to come too near first; where none is likely, to the likeliest
+  double limit_m = 0.0;      // nearer land is too near
   double bearing_rad = 0.0;  // of that place, from the bow clockwise
   std::vector<DangerPlace>
-      places;  // that are likely to come too near: of each bearing the nearest to the boat's way, and the nearest to the boat on it
+      places;  // places that are likely to come too near: of each bearing the nearest to the boat's way, and of those on the way the nearest
 };
 
-/// Land stands, so only the own way counts. A boat beside a quay is nearer to it than the limit all the time: land is too near only where the way
-/// leads below half of the distance of now as well.
+/// Land stands, so only the own way counts. A boat beside a quay is nearer to it than the limit all the time. So land is too near only where the way
+/// also leads below half of the distance to the nearest land now, which counts as 0.5 m at least.
 ///
 /// @param own       placed, with a velocity; `self` is its hull, velocity and turn
 /// @param shore_m   [places] map: cells of land with water before them

@@ -14,9 +14,9 @@
 
 namespace lookout::tracker {
 
-/// A barge under way looks like a quay. A piece that may be one is followed here, unpublished; it is no land once it has left a place where it stood,
-/// so that beams pass there, or comes where beams had passed before. A part of a quay or a bank, cut otherwise in each scan, seems to move, but
-/// leaves nothing free and comes to no free place. Memory: at most kMostPieces of 1 kB.
+/// A barge under way looks like a quay. Compact land that may be a barge is followed here, unpublished. It is no land once it has left a place where
+/// it stood, so that beams pass there, or has come where beams had passed before. A part of a quay or a bank, cut otherwise in each scan, seems to
+/// move, but leaves nothing free and comes to no free place. Memory: at most kMostPieces of 1 kB.
 class LandPieces {
  public:
   static constexpr std::size_t kMostPieces = 64;
@@ -34,7 +34,7 @@ class LandPieces {
     Sides sides;
   };
 
-  /// One that moves.
+  /// A piece that is proven to move.
   struct Proven {
     std::size_t index = 0;  // in the scan
     Utime first;

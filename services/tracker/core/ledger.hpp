@@ -13,9 +13,9 @@
 namespace lookout::tracker {
 
 /// The segmenter decides anew in each scan which pieces are one thing, and its errors flicker. The ledger keeps its decisions by place: for each pair
-/// of neighbouring cells the mean vote of the scans that saw both, the last ones most. Whether two pieces are one thing in a scan is then a sum of
-/// evidence: over all their pairs of cells, the mean vote, which counts less with distance and more with returns. Two pieces of land touch weakly, so
-/// being land counts as evidence, too.
+/// of neighbouring cells the mean vote of the scans that saw both, the last scans most. Whether two pieces are one thing in a scan is then a sum of
+/// evidence over all pairs of cells, one of each piece: the mean vote, which counts less with distance and more with returns. Two pieces of land
+/// touch weakly, so being land counts as evidence, too.
 ///
 /// Standing things are remembered on the earth, moving ones in a frame that moves and turns with them. Between two frames the scan alone decides; but
 /// a thing that was there for a while is no part of one that moves past it.
@@ -23,14 +23,14 @@ class Ledger {
  public:
   /// One piece of the scan (segments_t), which the segmenter does not cut.
   struct Piece {
-    std::int32_t segment = 0;                   // any number; the same for pieces of one segment
+    std::int32_t segment = 0;                   // any number, the same for all pieces of a segment
     bool is_land = false;                       // as its segment is called in this scan
     std::int32_t frame = 0;                     // index of the frames
     std::span<const Eigen::Vector2d> places_m;  // its returns on the map, at least one
   };
   /// A frame in which places are remembered.
   struct Frame {
-    std::int64_t id = 0;                                            // 0: the earth; each other thing that moves has its own, not used again
+    std::int64_t id = 0;                                            // 0: the earth; each moving thing has its own, which is not used again
     Eigen::Isometry2d T_frame_map = Eigen::Isometry2d::Identity();  // now
   };
   struct Groups {
@@ -38,7 +38,7 @@ class Ledger {
     std::vector<double> land;            // [groups] mean vote that it is land, -1 to 1
   };
 
-  /// Takes the votes of a scan, and decides which of its pieces are one thing. Cells that have not been seen in the last 200 scans are forgotten.
+  /// Adds the votes of a scan, and decides which of its pieces are one thing. Cells that have not been seen in the last 200 scans are forgotten.
   ///
   /// @param frames  the first is the earth
   /// @return until the next call
@@ -46,7 +46,7 @@ class Ledger {
   /// segment of a single return are left out. Memory: VoteGrid.
   const Groups& Divide(std::span<const Piece> pieces, std::span<const Frame> frames);
 
-  /// Of the last call's groups: the evidence between two of them, 0 or below; 0 where nothing was measured between them.
+  /// Evidence between two groups of the last call: 0 or below; 0 where nothing was measured between them.
   float EvidenceBetween(std::int32_t one, std::int32_t other) const { return between_.Find(one, other); }
 
   void Clear();
@@ -72,7 +72,7 @@ class Ledger {
     std::vector<std::int32_t> slots_;  // open hash table: index of pairs_, or -1
   };
 
-  // Pieces without neighbours, where there are very many pairs.
+  // Where there are very many pairs: finds segments of a single return, which then have no neighbours.
   void FindLone(std::span<const Piece> pieces);
   void TakeNote(std::span<const Piece> pieces, std::span<const Frame> frames);
   void FindLand(std::span<const Piece> pieces);

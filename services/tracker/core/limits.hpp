@@ -7,7 +7,7 @@
 
 namespace lookout::tracker {
 
-/// Of the config. A skipper's limits are kept within least and most.
+/// Limits of the config. Those that a skipper sets are kept within least_ and most_.
 struct LimitParams {
   Mode mode = Mode::kOpenWater;
   GuardZoneParams guard_zone = {};
@@ -16,9 +16,9 @@ struct LimitParams {
   double most_guard_zone_m = 1000.0;
   double least_cpa_limit_m = 0.1;
   double most_cpa_limit_m = 500.0;
-  // Of own_vessel from the reference point, to its farthest corner: a zone within it sees nothing.
+  // From the reference point to the farthest corner of own_vessel: a zone within it sees nothing.
   double own_reach_m = 0.0;
-  // In harbour: beyond own_vessel and the way that is gone before the boat stops.
+  // In harbour the zone reaches so far beyond own_vessel and the way that the boat goes before it stops.
   double harbour_margin_m = 2.0;
   double harbour_cpa_limit_m = 1.0;  // the least
 };
@@ -29,9 +29,9 @@ struct Limits {
   double cpa_limit_m = 0.0;
 };
 
-/// In harbour both shrink with the own speed, and never grow beyond the set limits: the zone to own_vessel, the way that the boat goes before it
-/// stops and a margin; the closest approach to half of that way. Where the speed is not known neither shrinks.
-/// @param settings  NaN: as the config says; its mode counts. A sector of 0 to 360 deg, or of none, is all round
+/// In harbour both limits shrink with the own speed, and never grow beyond the set ones: the zone to own_vessel, the way that the boat goes before it
+/// stops, and a margin; the closest approach to half of that way. Where the speed is not known neither shrinks.
+/// @param settings  NaN: as the config says; the mode of the settings counts. A sector of 0 to 360 deg, or of none, is all round
 /// @param own_mps   NaN: not known
 Limits LimitsOf(const LimitParams& params, const Settings& settings, double own_mps, const OwnAbility& ability);
 

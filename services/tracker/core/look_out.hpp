@@ -32,12 +32,12 @@ class LookOut {
     limits_ = LimitsOf(params.limits, settings_, 0.0, params.ability);
   }
 
-  /// With the next scan, before the tracker takes it.
+  /// An order is in force from the next scan on. Call this before Begin.
   void Take(const Order& order, Utime time);
-  /// Of the next scan: the tracker's closest approach goes by them, too.
+  /// @return the limits of the next scan: the tracker's closest approach goes by them, too
   const Limits& Begin(const std::optional<Pose>& own);
 
-  /// Before Update: acknowledgements know the names of this scan.
+  /// Call this before Acknowledge and Update: acknowledgements are of the things of this scan.
   void Rename(const Picture& picture, Utime time);
   bool Acknowledge(const Acknowledgement& acknowledgement, Utime time) { return alerts_.Acknowledge(acknowledgement, time); }
 
@@ -60,10 +60,10 @@ class LookOut {
   /// As returned by the last Update.
   const std::vector<Alert>& alerts() const { return told_; }
   const Names& names() const { return names_; }
-  /// Orders to name an id that is no track.
+  /// Number of orders that name an id which is no track.
   std::int64_t num_names_of_no_track() const { return num_names_of_no_track_; }
   const Limits& limits() const { return limits_; }
-  /// The guard zone as it is set, which does not shrink in harbour: somebody should see all of it.
+  /// The guard zone as it is set, not shrunk in harbour: somebody should look into all of it.
   GuardZoneParams WholeZone() const;
   std::int64_t sounding() const { return sounding_; }
   std::optional<Utime> silenced_until() const { return sound_.silenced_until(); }

@@ -12,20 +12,20 @@
 
 namespace lookout::tracker {
 
-/// From scan to scan the nearest places are the same thing. Drops and strays change their places; a thing stays.
+/// From one scan to the next, the places nearest to each other are the same thing. Drops and strays change their places; a thing stays.
 class Newcomers {
  public:
-  /// A thing goes by at most 10 m/s, and its outline changes by less than a metre.
+  /// Between two scans a thing moves by at most 1 m (10 m/s), and its outline changes by less than a metre.
   static constexpr double kFollowedM = 1.5;
   /// A boat in waves loses a low thing for some scans.
   static constexpr std::chrono::milliseconds kKeptFor{400};
 
-  /// In a downpour the nearest of a scan are followed, and of those known before the ones that were seen last, then the nearest.
+  /// In a downpour the nearest places of a scan are followed; of known places those stay that were seen last, then the nearest.
   static constexpr std::size_t kMostPlaces = 200;
   static constexpr std::size_t kMostKnown = 400;
 
   /// One scan. Cost: at most kMostPlaces x kMostKnown distances, sorted.
-  /// @return [places] seconds since something was seen there first; 0 of a place that is not followed
+  /// @return [places] seconds since the thing at that place was seen first; 0 of a place that is not followed
   std::vector<double> Update(Utime time, std::span<const DangerPlace> places);
 
   /// Places of scans, and known ones, that were dropped because there were too many.

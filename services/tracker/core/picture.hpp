@@ -15,7 +15,7 @@
 
 namespace lookout::tracker {
 
-inline constexpr std::int64_t kNoTrack = -1;  // of a piece
+inline constexpr std::int64_t kNoTrack = -1;  // the track of a piece that is not followed
 
 // Numbers of both are those of the wire.
 enum class TrackStatus : std::int32_t { kTentative = 1, kConfirmed = 2, kCoasting = 3, kLost = 4 };
@@ -23,7 +23,7 @@ enum class TrackKind : std::int32_t { kObstacle = 0, kBuoy = 1, kBoat = 2, kStru
 
 /// One track after a scan, propagated to its end; track_t says what the members mean.
 struct Track {
-  std::int64_t id = 0;  // from 1 up in the order in which they were confirmed; below -1 of a tentative one
+  std::int64_t id = 0;  // from 1 up in the order of confirmation; -2 and below of a tentative track
   TrackStatus status = TrackStatus::kTentative;
   TrackKind kind = TrackKind::kUnknown;
   Utime first;
@@ -49,10 +49,10 @@ struct Track {
   double range_m = 0.0;
   double bearing_rad = 0.0;
   ClosestApproach approach;
-  ClosestApproach approach_if_standing;  // where its velocity is not believed
+  ClosestApproach approach_if_standing;  // as if its velocity were 0: of a course that is not proven
   Encounter encounter = Encounter::kNone;
 };
-/// By now or before: it is there, or is hidden for a moment.
+/// Whether the track has been confirmed: it is there, or hidden for a moment.
 inline bool IsConfirmed(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
 
 /// The picture after a scan.
@@ -60,8 +60,8 @@ struct Picture {
   bool is_sight_known = false;
   std::vector<Track> tracks;  // by id
   std::vector<std::int32_t> land_segment_ids;
-  /// The track of each piece of the scan, by its number less one: the id of a track, 0 land, kNoTrack a piece that is not followed. Of a Sweep
-  /// without pieces by the id of its segment less one.
+  /// [pieces] by number less one, or, of a Sweep without pieces, [segments] by id less one: the id of its track, 0 for land, kNoTrack where it is not
+  /// followed.
   std::vector<std::int64_t> track_of_piece;
   std::vector<Eigen::Vector2d> waterline_m;  // remembered land with water before it; told every tenth scan, else empty
   bool is_waterline_told = false;

@@ -68,7 +68,8 @@ void Proof::Update(std::span<const Track> tracks, std::span<const Eigen::Vector2
     course.is_proven =
         gets_there && (!course.is_beside || gone_m >= kPassesM || (course.has_left && !IsBesideWhatStands(track, tracks, shore_m, kTouchM)));
     if (course.is_proven || seen_s <= 2.0 * kMostS) continue;
-    // It swung at its mooring; its present run is another course. A track that leaves slowly goes on from where it began.
+    // The track swung at its mooring: its present run is another course. For a track that leaves slowly, the distance from where it began still
+    // counts.
     if (course.is_beside) {
       course.begin = track.seen;
       course.begin_m = track.position_m;
@@ -85,7 +86,7 @@ void Proof::Rename(std::int64_t from_track, std::int64_t to_track) {
   moved.key() = to_track;
   const auto put = courses_.insert(std::move(moved));
   if (put.inserted) return;
-  // What one of two that are one has shown, both have.
+  // Two tracks became one: the course keeps what either has proven.
   auto& course = put.position->second;
   course.has_left = course.has_left || put.node.mapped().has_left;
   course.is_proven = course.is_proven || put.node.mapped().is_proven;

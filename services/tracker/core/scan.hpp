@@ -17,7 +17,7 @@ struct Seen {
   Utime time;  // mean of its returns
   bool is_sure = true;
   bool is_land = false;
-  double thing_probability = 1.0;  // 0 to 1, that it is no clutter; of a method that states none: 0.9 sure, 0.1 tentative
+  double thing_probability = 1.0;  // 0 to 1, that it is no clutter; of a method that states none 0.9 where sure, 0.1 where tentative
   int num_returns = 0;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();              // map
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();           // east, north

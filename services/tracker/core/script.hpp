@@ -1,4 +1,4 @@
-// Actions of a live run that its inputs do not tell: replay does the same.
+// Actions of a live run that its inputs do not tell. A replay reads them in ALERTS, and does the same.
 #pragma once
 
 #include <map>
@@ -11,14 +11,14 @@
 namespace lookout::tracker {
 
 struct Script {
-  /// Scans that one process used while time went on. A process has another stretch where time goes back.
+  /// Scans that one process used while time went on. Where time goes back, a process has another stretch.
   struct Stretch {
-    ScanKey begin;  // at which the process began
-    ScanKey first;
-    ScanKey last;  // that is known
+    ScanKey begin;  // the first scan that the process used
+    ScanKey first;  // of the stretch
+    ScanKey last;   // of the stretch, as far as the log tells
   };
   std::vector<Stretch> stretches;  // in their order; at least one
-  /// Taken with a scan, in their order.
+  /// Applied with that scan, in their order.
   std::map<ScanKey, std::vector<Acknowledgement>> acknowledged;
   std::map<ScanKey, std::vector<Order>> orders;
 };

@@ -12,9 +12,9 @@ namespace lookout::tracker {
 
 /// Beams that would have met a thing if it reflected each of them. Numbers are of all beams, estimated from at most 24 columns.
 struct Look {
-  double num_open = 0.0;    // met it, or nothing, or something behind it
-  double num_met = 0.0;     // ended in it
-  double num_hidden = 0.0;  // met something nearer: they say nothing
+  double num_open = 0.0;    // beams that met the thing, nothing, or something behind it
+  double num_met = 0.0;     // of these, beams that ended in it
+  double num_hidden = 0.0;  // beams that met something nearer: they say nothing
 };
 
 class Sight {
@@ -33,13 +33,13 @@ class Sight {
 
   /// Whether a square on the map, from its lower left corner, is within reach of the beams.
   bool Reaches(const Eigen::Vector2d& corner_m, double side_m) const;
-  /// Whether beams passed a place, above the water and below `top_m`, and none of these ended at it: they met something far behind, or nothing.
+  /// Whether beams passed a place between the water and `top_m`, and none of them ended there: they met something far behind, or nothing.
   bool IsFree(const Eigen::Vector2d& place_m, double top_m) const;
 
   /// The lidar on the map, in the middle of the scan.
   Eigen::Vector2d from_m() const { return (start_.translation() + 0.5 * (end_.translation() - start_.translation())).head<2>(); }
 
-  /// The scan as it is, for keeping. The sweep is that of Begin: nullptr where the scan says nothing.
+  /// The scan, for WatchedWater to keep. The sweep is that of Begin; nullptr where the scan says nothing.
   const Sweep* sweep() const { return sweep_; }
   const Eigen::Isometry3d& start() const { return start_; }  // T_map_lidar, z over the water
   const Eigen::Isometry3d& end() const { return end_; }

@@ -1,4 +1,4 @@
-// The sightings of a scan, once the earlier scans have decided which of its pieces are one.
+// The sightings of a scan: its pieces, merged as the ledger decides.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace lookout::tracker {
 
-/// One sighting, and its use in this scan.
+/// The returns of one thing in a scan, by the ledger, and their use in this scan.
 struct Sighting {
   enum class Use { kFree, kLand, kAssigned, kTaken, kLeftOut };
 
@@ -25,19 +25,19 @@ struct Sighting {
   double range_m = 0.0;             // of the middle from the lidar
   std::optional<Sides> sides = {};  // asked for where they are needed
   Use use = Use::kFree;
-  bool seems_moving = false;  // land that may be none: it is not remembered
+  bool seems_moving = false;  // land that may be a barge: it is not remembered as land
 };
 
 struct Sightings {
   std::vector<Sighting> all;
-  std::int32_t num_groups = 0;  // of the ledger: the first ones of all, in its order
-  // The sighting of pieces (by number less one) and segments (by id less one), by index; of a segment in several the one with most of its returns;
-  // -1: there is no such piece or segment, or it shows in second returns alone.
+  std::int32_t num_groups = 0;  // the first so many of `all` are the groups of the ledger, in its order
+  // Index of the sighting of each piece (by number less one) and segment (by id less one). Of a segment in several sightings it is the one with most
+  // of its returns. -1: there is no such piece or segment, or it shows in second returns alone.
   std::vector<std::int32_t> of_piece;
   std::vector<std::int32_t> of_segment;
 };
 
-/// Asks the ledger. Where the scan has no labels, its segments are the sightings.
+/// Merges the pieces of the scan as the ledger decides. Where the scan has no labels, its segments are the sightings.
 /// @param tracks  predicted to the scan
 /// @param ledger  nullptr: segments stay as the scan has them
 Sightings SightingsOf(const ScanInput& scan, const Sight& sight, const std::deque<Followed>& tracks, Ledger* ledger);

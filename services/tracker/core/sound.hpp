@@ -19,25 +19,25 @@ class Sound {
  public:
   static constexpr std::chrono::seconds kSilence{30};
   static constexpr std::chrono::seconds kOnce{1};
-  /// Alerts that come again within it are the same (Alerts::kSameS): they were heard.
+  /// An alert that comes up again within this time is the same (Alerts::kSameS), and was heard.
   static constexpr std::chrono::seconds kRemembered{10};
 
   void Silence(Utime time);
 
   /// One scan.
   /// @param alerts  the gravest first
-  /// @return id of the one that sounds; 0: none
+  /// @return id of the alert that sounds; 0: none
   std::int64_t Update(Utime time, std::span<const Alert> alerts);
 
-  /// nullopt: it is not.
+  /// nullopt: the sound is not silenced.
   std::optional<Utime> silenced_until() const { return silenced_until_; }
 
  private:
   struct Heard {
-    AlertLevel level = AlertLevel::kCaution;  // with which it was active last
+    AlertLevel level = AlertLevel::kCaution;  // of the alert, when it was active last
     AlertState state = AlertState::kActive;
     Utime begin;  // when it became active
-    Utime known;  // when there was such an alert last
+    Utime known;  // when the alert was there last
     bool is_silenced = false;
   };
 

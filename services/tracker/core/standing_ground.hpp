@@ -1,4 +1,4 @@
-// Where something stood in the last half minute: quays, pontoons, moored boats, as little of them as is seen at a time.
+// Where something stood in the last half minute: quays, pontoons, moored boats, of which a scan shows a few returns.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,24 +12,24 @@
 
 namespace lookout::tracker {
 
-/// Square cells of the map, each with the half seconds in which it held returns of what does not move. A quay that is seen along its face, or a
-/// pontoon in waves, shows a few returns, now here and now there: no scan says that it stands there, half a minute does. What hangs over the water,
-/// as a bridge, is remembered apart: a boat passes below it.
+/// Square cells of the map, each with the half seconds in which it held returns of things that do not move. A quay that is seen along its face, or a
+/// pontoon in waves, shows a few returns, now here and now there: no single scan says that it stands there, half a minute does. Returns high over the
+/// water, as of a bridge, are remembered apart: a boat passes below them.
 ///
 /// Memory: some 60 bytes a cell, 24 MB at most.
 class StandingGround {
  public:
   static constexpr double kCellM = 0.5;
   static constexpr int kKept = 64;           // half seconds
-  static constexpr double kOverheadM = 2.5;  // over the water: from here on it is above the hull of a small boat
+  static constexpr double kOverheadM = 2.5;  // over the water: higher than the hull of a small boat
 
   /// Begins a scan. Cells that were not met for longer than is kept are forgotten now and then.
   void Begin(Utime time);
   /// @param places_m   on the map, of returns of one thing that is not known to move
   /// @param heights_m  over the water, of each of them; empty: not known, which counts as low
   void Add(std::span<const Eigen::Vector2d> places_m, std::span<const double> heights_m);
-  /// In how many half seconds before that of `before` something was met in the cell of a place, or in one of the eight beside it: overhead where the
-  /// place is, else low.
+  /// Number of kept half seconds before `before` in which the cell of the place, or one of its eight neighbours, held returns: in the overhead layer
+  /// for heights from kOverheadM on, else in the low one.
   int TimesMet(const Eigen::Vector2d& place_m, double height_m, Utime before) const;
   void Clear() { layers_ = {}; }
   std::size_t num_cells() const { return layers_[0].size() + layers_[1].size(); }

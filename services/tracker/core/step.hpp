@@ -21,7 +21,7 @@
 
 namespace lookout::tracker {
 
-// Within a longer or wider outline, as of a dock with berths, another thing may lie.
+// In an outline that is longer or wider, as of a dock with berths, another thing may lie.
 inline constexpr double kLongestWholeM = 15.0;
 inline constexpr double kWidestBoatM = 6.0;
 
@@ -45,18 +45,18 @@ struct Known {
   std::int64_t next_number = 1;
   std::int64_t num_outdated = 0;    // segments placed by an own position that became much better known in the scan
   std::int64_t num_over_limit = 0;  // segments that became no track
-  double settled_sd_m = 0.0;        // of the own position before, where it became much better known with this scan
-  bool had_sight = false;           // ever: without beams at all, misses count by themselves
+  double settled_sd_m = 0.0;        // deviation of the own position before this scan; set only if this scan made it much smaller, else 0
+  bool had_sight = false;           // in any scan so far: where LIDAR_SCAN never comes, misses count without it
 };
 
-// Cheap, before a polygon is asked: rounding counts for it.
+// A cheap test before one of polygons; rounding makes it true rather than false.
 inline bool IsWithin(const Eigen::Vector2d& place_m, const Eigen::Vector2d& middle_m, double radius_m) {
   constexpr double kOfRoundingM = 1e-6;
   return (place_m - middle_m).norm() <= radius_m + kOfRoundingM;
 }
 
-/// Run it once; its results are then to be taken. Its stages are files: step_associate, step_exist, step_ground, step_move, step_land, step_merge,
-/// step_settle.
+/// Call Run once, then TakePicture. Its stages are in files of their own: step_settle, step_land, step_associate, step_move, step_exist, step_merge,
+/// step_ground.
 class Step {
  public:
   Step(const TrackerParams& params, const ScanInput& scan, Known& known, double dt_s) : params_(params), scan_(scan), known_(known), dt_s_(dt_s) {}

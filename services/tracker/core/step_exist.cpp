@@ -43,7 +43,7 @@ void Step::Look() {
     const double share = track.beams_met / track.beams_open;
     // Probability that none of the beams comes back, each with this share; at most 20 count, as they are not independent.
     double none = 1.0;
-    // Beams that ended in the outline met something there, if not the track's own segment.
+    // A beam that ended in the outline does not count as empty, even if its return belongs to another segment.
     const double num_empty = look.num_open - look.num_met;
     for (int i = 0; i < std::min(20, static_cast<int>(std::lround(num_empty))); ++i) none *= 1.0 - share;
     track.is_met = look.num_met > 0.5 * look.num_open;

@@ -7,8 +7,8 @@
 
 namespace lookout::tracker {
 
-// Sure segments and confirmed tracks that are not known to move. Wakes and crests, in which a boat follows, are hardly ever sure; a drop is one
-// return. The own gear goes along, and a boat may follow in its trail.
+// Remembers where sure segments and confirmed tracks are that are not known to move. Wakes and crests, into which a boat may come, are hardly ever
+// sure; a drop is one return. The own gear goes along with the boat, and another boat may come where it was.
 void Step::RememberGround() {
   constexpr std::size_t kLeastReturns = 2;
   known_.ground.Begin(scan_.end_time);
@@ -20,7 +20,7 @@ void Step::RememberGround() {
   for (const auto& track : known_.tracks) {
     if (track.is_confirmed && track.frame == 0 && track.is_seen_now) stands[track.sighting] = 1;
   }
-  // What moves may be in several segments, and have parts that are no known track.
+  // A moving track may come in several segments, and have parts that are no known track.
   for (const auto& track : known_.tracks) {
     if (track.frame == 0) continue;
     for (const std::int32_t number : track.segment_ids) stands[static_cast<std::size_t>(number - 1)] = 0;
@@ -42,10 +42,10 @@ void Step::LookAtGround() {
   }
 }
 
-// What moves comes to places that were empty. Whether most of the returns that lead lie where something stood, before the thing can have come there:
-// then it is a piece of a quay that is taken for the whole, now this piece and now that, or it went over to what stands.
+// A moving thing enters cells that were empty. True if most of the returns in its foremost 0.5 m lie in cells where something stood before the thing
+// can have got there: then the track jumps between pieces of a quay, or has slipped onto something standing.
 bool Step::IsOnGround(const Followed& track) const {
-  constexpr double kWayM = 1.0;    // ago
+  constexpr double kWayM = 1.0;    // that the track goes meanwhile: what stood there before is ground
   constexpr double kLeadsM = 0.5;  // behind the foremost return
   constexpr double kSlowestMps = 0.1;
   constexpr int kStandsFor = 3;  // half seconds: a crest passes

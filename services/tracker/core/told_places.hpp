@@ -25,15 +25,14 @@ double DistanceOf(const DangerPlace& one, const DangerPlace& other);
 
 /// Whether a danger is what a person has acknowledged. An acknowledgement covers the places that were told when it was given:
 ///
-/// - *Land* is covered where the place on the map is one that was told; since a quay goes on beside a boat that sails along it, where land was told
-/// on
-///   the same bearing from the bow and has been there since, at most twice as far; and where it goes on from covered land without coming nearer, as
-///   the rest of a quay does. Forward of the beam the last two hold only for land at least half as far aside of the bow: a wall across the bow is
-///   none.
+/// - *Land* is covered if (1) it lies at a told place of the map; or (2) land was told on that bearing (kBesideRad to both sides) and has been seen
+///   there since, at most twice as far, as a quay beside a boat that sails along it; or (3) it continues covered land without coming nearer, as the
+///   rest of a quay does. Forward of the beam (2) and (3) need the same side of the bow line, and at least half of the offset from it that the
+///   covered land has: so a wall ahead is not covered.
 /// - *A thing without a track* is followed from scan to scan, to the nearest place: on the map, or from the vessel where the pose is not known.
 ///
-/// A covered place rings anew (is untold) when it comes nearer than half of the distance that was told, or, forward of the beam, more than 60 degrees
-/// of bearing away from where it was told: the boat has turned towards it. Everything else that was not told is untold.
+/// A covered place is untold again when it comes nearer than half of the told distance, or lies forward of the beam and more than 60 degrees from the
+/// told bearing: the boat has turned towards it. All other places are untold.
 class ToldPlaces {
  public:
   enum class Kind : std::uint8_t { kLand, kThings };
@@ -44,10 +43,10 @@ class ToldPlaces {
 
   explicit ToldPlaces(Kind kind) : kind_(kind) {}
 
-  /// The acknowledgement: all of these are told.
+  /// An acknowledgement of all these places.
   void Tell(Utime time, std::span<const DangerPlace> places);
 
-  /// The map has another datum: positions of before are those of other places.
+  /// The map has another datum: earlier positions lie elsewhere on it.
   void ForgetMap();
 
   /// One scan.

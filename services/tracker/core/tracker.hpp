@@ -19,12 +19,12 @@ namespace lookout::tracker {
 struct TrackerParams {
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
   double reference_point_above_water_m = 0.0;
-  double max_range_m = 0.0;                 // of the segmenter: beyond it nothing could have been seen
+  double max_range_m = 0.0;                 // of the segmenter: farther things cannot be seen
   std::vector<Eigen::Vector2d> own_hull_m;  // vessel frame, convex, counter-clockwise
   EncounterParams encounter;
-  double moving_probability = 0.95;   // above which a track moves
-  double confirm_probability = 0.95;  // existence
-  double end_probability = 0.01;
+  double moving_probability = 0.95;   // a track above it moves
+  double confirm_probability = 0.95;  // a track of a greater probability is confirmed
+  double end_probability = 0.01;      // a tentative track of a lower existence ends
   Without without;
 };
 
@@ -33,15 +33,14 @@ class Tracker {
   explicit Tracker(const TrackerParams& params);
   ~Tracker();
 
-  /// Scans in the order of time. One without a pose, in another map frame, after a step of time of more than 10 s or back, or after a jump of the own
-  /// position that its speed does not explain, begins anew; each has its counter.
-  /// Cost and memory: README.md.
+  /// Scans in the order of time. All tracks are forgotten with a scan in another map frame, after a gap of more than 10 s, after a step of time back,
+  /// or after a jump of the own position that its speed does not explain; each reason has its counter. Cost and memory: README.md.
   const Picture& Update(const ScanInput& scan);
   /// Whether Update with this scan will begin anew.
   bool BeginsAnewWith(const ScanInput& scan) const;
   /// From the next scan on.
   void SetEncounter(const EncounterParams& encounter);
-  /// Start mark: everything is forgotten but the next id.
+  /// Forgets everything but the next id, as at a start mark.
   void Reset();
 
   std::vector<Counter> counters() const;

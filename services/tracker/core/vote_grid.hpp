@@ -12,7 +12,7 @@
 
 namespace lookout::tracker {
 
-/// A mean of votes of -1 to 1, the last ones most.
+/// A mean of votes from -1 to 1, in which the last votes count most.
 class MeanVote {
  public:
   /// @param fade  weight of an earlier vote when one more comes
@@ -30,14 +30,14 @@ class MeanVote {
 
 /// Square cells of a plane, or of several (frames), with a mean vote for each pair of cells at most kReach cells apart.
 ///
-/// Memory: 400 bytes a cell. A cell that is not seen for a while is forgotten; with more than kMostCells cells, after an eighth of that while; with
-/// more than four times as many (32 MB), all are.
+/// Memory: 400 bytes a cell. A cell that is not seen for num_scans scans is forgotten; with more than kMostCells cells, after an eighth of that; with
+/// more than four times as many (32 MB), all cells are.
 class VoteGrid {
  public:
   static constexpr std::int32_t kReach = 5;  // cells
   static constexpr std::size_t kMostCells = 20'000;
 
-  /// The segment that a cell stands for: each that has returns in it, or the one with most of them (those, where several have as many).
+  /// The segments that a cell stands for: all that have returns in it, or the one with most returns (all of these, where several have as many).
   enum class Content { kAll, kMostOf };
   /// The weight of a vote: one, or more with the returns of both cells.
   enum class Weight { kOne, kByReturns };
@@ -59,14 +59,14 @@ class VoteGrid {
     std::int32_t end = 0;
     std::int32_t count = 0;  // returns
     std::int32_t slot = 0;
-    std::int32_t age = 0;  // scans that saw it before
+    std::int32_t age = 0;  // number of earlier scans that saw the cell
   };
-  /// Two of them at most kReach apart, the first before the second, or the same.
+  /// Two held cells at most kReach apart, the first before the second, or a cell with itself.
   struct Pair {
     std::int32_t one = 0;
     std::int32_t other = 0;
     std::int32_t distance2 = 0;  // cells, squared
-    float mean = 0.0F;           // vote, this scan's in it
+    float mean = 0.0F;           // of the votes, with that of this scan
   };
 
   /// Begins a scan. Cells that were not seen in the last num_scans are forgotten.
@@ -74,10 +74,10 @@ class VoteGrid {
   /// @param segment_of_piece  at most 65 536 pieces
   void Begin(std::span<const std::int64_t> frame_ids, std::span<const std::int32_t> segment_of_piece, std::int64_t num_scans);
   /// @param frame, piece  indices of those of Begin
-  /// @param place_m       at most 32 767 cells from the first of its frame in this scan; farther counts as so far
+  /// @param place_m       at most 32 767 cells from the frame's first place in this scan; a farther place counts as that far
   void Add(std::int32_t frame, const Eigen::Vector2d& place_m, std::int32_t piece);
-  /// Ends the scan: each pair votes, 1 for one segment, -1 for two; of cells with several, between.
-  /// @param fade  what earlier votes count
+  /// Ends the scan: each pair votes, 1 for one segment, -1 for two, between them where a cell holds several segments.
+  /// @param fade  weight of earlier votes
   void Vote(float fade, Weight weight);
   /// In place of Vote: pairs of this scan, without votes or memory.
   void FindPairs();
@@ -87,7 +87,7 @@ class VoteGrid {
   std::span<const Entry> EntriesOf(const Held& cell) const {
     return std::span(entries_).subspan(static_cast<std::size_t>(cell.first), static_cast<std::size_t>(cell.end - cell.first));
   }
-  /// One more vote of each cell for itself, as that it is land.
+  /// A further vote of a cell, of itself alone: the ledger's vote that it is land.
   MeanVote& OwnVote(const Held& cell) { return cells_[static_cast<std::size_t>(cell.slot)].own; }
 
   void Clear();

@@ -11,29 +11,29 @@
 
 namespace lookout::tracker {
 
-/// Of the scans before one: in how many of them such a thing would have been met at a place.
+/// How many scans before the first sighting of a thing looked at its place.
 struct Watched {
-  int num_looks = 0;  // beams came there, between the water and its top
-  int num_empty = 0;  // of these, nothing was near
+  int num_looks = 0;  // scans whose beams came there, between the water and the thing's top
+  int num_empty = 0;  // of these, scans that met nothing near the place
 
   friend bool operator==(const Watched&, const Watched&) = default;
 };
 
-/// Evidence that a thing came up just then, where it is seen now: how unlikely it is that it was there and was missed each time, as log odds.
-/// @param seen_share  of scans in which it is seen, of those in which it could be
+/// Log odds that the thing came up when it was seen first: how unlikely it is that it was there before, and was missed each time.
+/// @param seen_share  share of the scans that saw the thing, of those that could
 double CameUpLogOdds(const Watched& watched, double seen_share);
 
-/// The beams of the last scans, as little of them as this question needs: 2 bytes a shot. A VLP-16 has 300 000 shots a second, so 1.9 MB.
+/// The beams of the last scans, with 2 bytes a shot, which is all that this question needs. A VLP-16 has 300 000 shots a second, so 1.9 MB.
 class WatchedWater {
  public:
   static constexpr double kKeptS = 3.0;
   static constexpr std::size_t kMostScans = 100;
-  static constexpr double kWatchedS = 2.0;  // before something came up: long enough to say that there was nothing
+  static constexpr double kWatchedS = 2.0;  // before something came up: long enough to say that nothing was there
 
   /// @param time  of the scan's end; later than all before
   void Add(const Sight& sight, Utime time);
   /// @param top_m   of the thing, above the water
-  /// @param before  end of the scan in which it was seen first: those of the 2 s before it count
+  /// @param before  end of the scan in which it was seen first: scans of the 2 s before that count
   Watched At(const Eigen::Vector2d& place_m, double top_m, Utime before) const;
   void Clear() { scans_.clear(); }
 

@@ -31,25 +31,25 @@ struct UnseenPart {
   Sector bearing;       // from the bow clockwise
   double from_m = 0.0;  // from the vessel's origin
   double to_m = 0.0;
-  bool begins_with_zone = true;  // in most of its bearings nothing of the zone is nearer and seen
-  bool ends_with_zone = true;    // the same, farther
-  bool is_wide = false;          // worth an alert: kLeastWidthRad and kLeastWidthM, or all of the zone's bearings
+  bool begins_with_zone = true;  // in most of its bearings no nearer part of the zone is seen
+  bool ends_with_zone = true;    // in most of its bearings no farther part of the zone is seen
+  bool is_wide = false;          // worth an alert: as wide as kLeastWidthRad and kLeastWidthM, or all of the zone's bearings
 };
 
 struct ZoneSightParams {
   GuardZoneParams zone = {};  // range 0: none, and nothing is told
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
   double reference_point_above_water_m = 0.0;
-  double min_range_m = 0.0;  // of the segmenter, from the lidar, as are the next two
+  double min_range_m = 0.0;  // of the segmenter, from the lidar; so are max_range_m and field_of_view
   double max_range_m = 120.0;
   Sector field_of_view = {};                       // azimuths of the lidar
   Eigen::AlignedBox3d own_vessel_box_m{};          // vessel frame; empty = none
   Eigen::AlignedBox2d own_hull_m{};                // vessel frame, inside of the box
-  std::vector<float> expected_elevation_rad = {};  // of the lidar that the config names, from the lowest up: for words before a scan came
+  std::vector<float> expected_elevation_rad = {};  // of the rings, by the model in the config, from the lowest up: for texts on the config alone
 };
 
-/// The zone in cells: bearings of a degree, ranges of a twentieth of its range. A cell can be looked into where a beam passes through a post that
-/// stands in its middle, from the water up to `top_m`, at a range and azimuth that the segmenter takes. Cells inside of own_vessel within 1 m of the
+/// The zone in cells: a degree of bearing by a twentieth of its range. A beam looks into a cell when it passes through a post that stands in the
+/// middle of the cell, from the water up to `top_m`, at a range and azimuth that the segmenter takes. Cells inside of own_vessel within 1 m of the
 /// hull are no part of the zone. The boat floats level.
 class ZoneGrid {
  public:
@@ -64,7 +64,7 @@ class ZoneGrid {
   };
   struct Cell {
     bool is_zone = false;
-    Unseen why = Unseen::kNo;  // where it has no way
+    Unseen why = Unseen::kNo;  // why no beam could look into it; kNo: some can
     std::uint32_t first_way = 0;
     std::uint32_t num_ways = 0;
   };
@@ -77,7 +77,7 @@ class ZoneGrid {
   /// The parts that are not looked into, the largest first.
   /// @param why  [cells] kNo where somebody looks
   std::vector<UnseenPart> PartsOf(std::span<const Unseen> why) const;
-  /// The same as far as the config tells: of a lidar that fires all round, with nothing before it.
+  /// The parts that the config alone leaves out: for a lidar that fires all round, with nothing before it.
   std::vector<UnseenPart> PartsByConfig() const;
 
   static constexpr std::size_t kNumRanges = 20;
@@ -105,18 +105,18 @@ class ZoneGrid {
   std::vector<Way> ways_;
 };
 
-/// Scan by scan. Calm water gives no returns, so the columns that come at all tell, and the beams that end on the own boat before they reach a place.
-/// A place is not looked into when less than a quarter of the last seconds' scans look there, and is again above three fifths: an alert needs 3 of 5
-/// scans. So lost packets, and a person who walks past the lidar, are told only where they last.
+/// Scan by scan. Calm water gives no returns. So the columns of the scan say where the lidar looks, except for beams that end on the own boat before
+/// they reach a place. A place is unseen when fewer than a quarter of the last seconds' scans look there, and seen again at more than three fifths,
+/// as an alert needs 3 of 5 scans. So lost packets, and a person who walks past the lidar, are told only where they last.
 class ZoneSight {
  public:
   /// A person in a kayak or a dinghy.
   static constexpr double kPostM = 1.0;
-  /// A gap of 5 deg is 0.9 m wide at the edge of a zone of 10 m: a kayak fits into it with its paddler. A boat that stays on one bearing comes nearer
-  /// unseen in it until it is wider than the gap. Narrower gaps (a mast) are counted, and raise no alert: they would do so for ever.
+  /// A gap of 5 deg is 0.9 m wide at the edge of a zone of 10 m: a kayak fits into it with its paddler. A boat that stays on the gap's bearing comes
+  /// nearer unseen until the boat is wider than the gap. Narrower gaps (a mast) are counted, and raise no alert: it would stand for ever.
   static constexpr double kLeastWidthRad = DegToRad(5.0);
   static constexpr double kLeastWidthM = 0.8;
-  /// Of a part that is nearer or farther than the seen part of its bearing.
+  /// Least depth of an unseen part that is nearer or farther than the seen part of its bearing.
   static constexpr double kLeastDepthM = 1.0;
   static constexpr double kTimeConstantS = 2.0;
   static constexpr double kUnseenShare = 0.25;
@@ -125,17 +125,17 @@ class ZoneSight {
   explicit ZoneSight(const ZoneSightParams& params) : params_(params) {}
 
   void Update(Utime time, const Sweep& sweep);
-  /// Another one is looked at anew; the same changes nothing.
+  /// Begins anew with another zone; the same zone changes nothing.
   void SetZone(const GuardZoneParams& zone);
 
   /// Worth an alert, the largest first.
   const std::vector<UnseenPart>& parts() const { return wide_; }
-  /// Whether nobody looks into any of it.
+  /// Whether nobody looks into any part of the zone.
   bool is_whole() const { return is_whole_; }
-  /// Bearings of which a part is not looked into, those of narrow gaps, too; rounded.
+  /// Degrees of bearing of which a part is unseen, narrow gaps included; rounded.
   int unseen_deg() const { return unseen_deg_; }
 
-  /// For Alerts: of cause WATCH, and as another thing each time that parts come up of which 5 deg were not told before.
+  /// For Alerts: a danger of cause WATCH. It is another thing each time that parts come up of which 5 deg were not told before.
   std::optional<Danger> danger() const;
 
  private:
@@ -146,8 +146,8 @@ class ZoneSight {
   ZoneSightParams params_;
   std::optional<ZoneGrid> grid_;
   std::vector<float> elevation_rad_;  // of the grid
-  std::vector<float> reach_m_;        // [degrees x rings] how far the beams see there; below 0: there is none
-  std::vector<double> share_;         // [cells] of scans that look there
+  std::vector<float> reach_m_;        // [degrees x rings] how far the beams see there; below 0: there is no beam
+  std::vector<double> share_;         // [cells] share of the last seconds' scans that look there
   std::vector<Unseen> why_;           // [cells]
   std::vector<bool> told_;            // [bearings]
   std::vector<UnseenPart> wide_;

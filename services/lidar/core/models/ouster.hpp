@@ -105,8 +105,7 @@ struct OusterLayout {
 };
 
 /// @return every layout that has the size of this payload and columns that follow one another; empty: it is no data packet of an Ouster. Layouts of
-/// one
-///         size cannot be told apart by a packet
+///         one size cannot be told apart by a packet
 std::vector<OusterLayout> OusterLayoutsOf(Bytes payload);
 
 /// Stamp of the first column. Precondition: `layout` is one of OusterLayoutsOf(payload).

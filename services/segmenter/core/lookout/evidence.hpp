@@ -17,7 +17,7 @@ inline constexpr std::size_t kTreeDepth = 3;
 inline constexpr std::size_t kMostFeatures = 64;
 inline constexpr std::size_t kTreeLeaves = std::size_t{1} << kTreeDepth;
 
-/// A question to a feature: is it above this? An empty name: there is no such question.
+/// A question: is the feature above this value? An empty name: no question.
 struct NamedSplit {
   std::string_view feature;
   float above = 0.0F;
@@ -74,7 +74,7 @@ class Evidence {
   bool operator==(const Evidence&) const = default;
 
  private:
-  // Filled up to kTreeDepth splits with such that nothing is above.
+  // Filled up to kTreeDepth splits with splits that nothing is above.
   struct Tree {
     std::array<float, kTreeLeaves> log_odds{};
     std::array<float, kTreeDepth> above{};

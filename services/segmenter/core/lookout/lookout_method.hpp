@@ -20,35 +20,39 @@
 
 namespace lookout::segmenter {
 
-/// Confidence and kind of a group, beside its returns.
+/// Probabilities of a group. Segmenter (Decide) makes confidence and kind of them.
 struct GroupFacts {
   float land_probability = 0.0F;
-  float thing_probability = 0.0F;  // that it is a thing, and not spray, rain, foam or a glint
-  float seen_share = 1.0F;         // of the columns from its first to its last: in the others something nearer hides it, or there is no return
+  float thing_probability = 0.0F;  // to be a thing, and not spray, rain, foam or a glint
+  float seen_share = 1.0F;         // share of the columns between its ends that show it: in the rest something nearer hides it, or nothing came back
 };
 
-/// LookoutParams::link for a lidar whose columns are so far apart: where they are wider than those of a VLP-16, the reach is longer.
+/// LookoutParams::link for a lidar with this step between columns: with wider columns than a VLP-16's the reach is longer.
 Reach LinkFor(Reach link, double column_step_rad);
 
-/// Works on one scan after the other and keeps nothing of the last but its memory: the same scan gives the same groups. Turning the scene by whole
-/// columns or mirroring it changes nothing but the numbers of the groups.
+/// Works on one scan after the other, and keeps nothing of the last but allocated memory: the same scan gives the same groups. Turning the scene by
+/// whole columns or mirroring it changes nothing but the numbers of the groups.
 class LookoutMethod {
  public:
   LookoutMethod(const LookoutParams& params, const Eigen::Matrix3d& R_vessel_lidar)
       : params_(params), R_vessel_lidar_(R_vessel_lidar), pair_finder_(params.lidar_above_water_m) {}
 
-  /// Groups the returns; each is in one, but where a scan is in more than TightPieces::kMostPieces. Results hold until the next call.
+  /// Groups the returns; each is in one group, unless the scan has more than TightPieces::kMostPieces tight pieces. Results hold until the next call.
   /// Cost: about proportional to the returns and cells. Allocates nothing once it has seen a scan of that size.
   void Group(const Scan& scan, std::span<const Return> returns);
 
-  /// The steps of Group, in this order; lookout-fit reads its rows between them. 1. Tight pieces.
+  /// Group calls FindPieces, then kNumMerges times FindPairs and Merge, then MeasureGroups and Judge. lookout-fit and the table `merges` of
+  /// lookout-export call them one by one.
+  ///
+  /// Links returns to tight pieces.
   void FindPieces(const Scan& scan, std::span<const Return> returns);
-  /// 2. kNumMerges times: features of the pairs of pieces (valid until the pieces change),
+  /// Features of the pairs of pieces; valid until the pieces change.
   std::span<const PiecePair> FindPairs(std::size_t merge);
-  /// 3. and pieces merged by the log odds of these pairs.
+  /// Merges pieces by the log odds of these pairs.
   void Merge(std::size_t merge, std::span<const PiecePair> pairs);
-  /// 4. Features of each piece.
+  /// Features of each piece: after the last round a piece is a group.
   std::span<const PieceFeatures> MeasureGroups();
+  /// Probabilities of each group.
   void Judge(std::span<const PieceFeatures> features);
 
   const ScanGrid& grid() const { return grid_; }

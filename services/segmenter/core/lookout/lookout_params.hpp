@@ -39,7 +39,7 @@ struct LookoutParams {
   // Certain pairs merge first; then the rest, by features of the larger pieces. Reaches and thresholds belong to the evidence, which is fitted with
   // them; they were chosen on the families of scenes (DECISIONS.md).
   std::array<MergeParams, kNumMerges> merges{{{{1.0, 0.03}, 2.0}, {{2.5, 0.08}, 1.0}, {{6.0, 0.12}, 0.0, true}}};
-  // A group of two returns or more is sure when its probability to be no clutter is greater than this; a sure group is land when that probability is.
+  // A group of two returns or more is sure if thing_probability > sure_probability. A sure group is land if its land probability > land_probability.
   double land_probability = 0.7;
   double sure_probability = 0.5;
   std::array<Evidence, kNumSums> evidence = DefaultEvidences();

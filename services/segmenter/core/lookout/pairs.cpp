@@ -42,8 +42,8 @@ struct Share {
 };
 constexpr std::array<Share, 4> kShares{{{1.0, 1.0}, {0.0, 1.0}, {0.0, 0.3}, {0.0, 0.1}}};
 constexpr std::size_t kNoneOfFew = 1;
-// So many columns of all pieces of few returns, and of the others, are beyond the bounds, and need not be tried: 5000 drops have 4000, a canal with
-// trees on both banks has 9000 of the others.
+// Where pieces of few returns cover more columns than kMostShownFew, they are in no pair; where larger pieces cover more than kMostShownLarger, the
+// scan has no pairs. Heavy rain of 5000 drops covers 4000, the larger pieces of a canal with trees on both banks 9000.
 constexpr std::size_t kMostShownFew = 16'384;
 constexpr std::size_t kMostShownLarger = 32'768;
 constexpr std::size_t kLeastCounted = 6144;  // more than heavy rain shows

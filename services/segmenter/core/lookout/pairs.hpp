@@ -22,7 +22,7 @@ enum class PairFeature : std::uint8_t {
   kFreeGap,         // m, the part of the gap that nothing nearer hides
   kGapAngle,        // deg, between their columns there; 0 where they share columns
   kRadialGap,       // m, how much farther the back is there
-  kRadialGapRings,  // the same over the distance at which the next ring would meet calm water
+  kRadialGapRings,  // kRadialGap over the distance at which the next ring would meet calm water
   kRiseGap,         // deg, between their rings there; 0 where they share rings
   kStepUp,          // m, from the top of the front to the bottom of the back, there
   kOverlap,         // columns that their arcs share, over those of the lesser arc
@@ -68,9 +68,8 @@ struct PiecePair {
 
 class PairFinder {
  public:
-  /// A scan gives no more pairs in a round, and none are looked for with more looks at columns and at pieces behind and beside. Normal scans stay
-  /// below: in rain and fog they take 2600 pairs and 180 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
-  /// hold.
+  /// A round finds at most kMostPairs pairs, with at most kMostLooks looks at columns and at pieces behind and beside. A scan that needs more gets a
+  /// shorter reach, in this round and its later ones. Normal scans do not: rain and fog take 2600 pairs and 180 000 looks.
   static constexpr std::size_t kMostPairs = 6000;
   static constexpr std::int64_t kMostLooks = 400'000;
 
@@ -86,7 +85,7 @@ class PairFinder {
   std::span<const PiecePair> Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, bool reaches_behind);
 
  private:
-  // Reach of two pieces; of two pieces of few returns; of a larger piece and one of few returns.
+  // Reach of any two pieces; of two pieces of few returns; of a larger piece and a piece of few returns.
   struct Reaches {
     Reach any;
     Reach of_few;
@@ -132,7 +131,7 @@ class PairFinder {
   };
   struct Paired {
     int num = 0;
-    int last_step = 0;  // that was looked at
+    int last_step = 0;  // the last column that was looked at
   };
 
   // Entries of one kind, by column, the nearest first.
@@ -157,7 +156,7 @@ class PairFinder {
     int num_columns() const { return static_cast<int>(begin_of_column.size()) - 1; }
   };
 
-  // Columns to the last and to the next of the same piece; round the circle where there is none between.
+  // Columns to the last and to the next entry of the same piece; round the whole circle for a piece of one entry.
   struct Steps {
     std::int32_t before = 0;
     std::int32_t after = 0;

@@ -226,8 +226,9 @@ void PieceTable::MergeOutlines(std::span<const std::int32_t> group_of_piece) {
   entries_.resize(num);
 }
 
-// The circle without the widest gap between the columns of a piece. Of equal gaps it is the one whose ends are farther off, as it would be wherever
-// the scan began and in the mirror. Where these are equal too, to the bit, the first: of a ring that looks the same all round, no rule could tell.
+// Arc of a piece: the circle minus the widest gap between its columns. Of equal gaps it is the one with the farther ends, so that neither the start
+// of the scan nor mirroring matters. Where the ends are equal to the bit too, it is the first: in a ring that looks the same all round no rule could
+// tell.
 void PieceTable::FindArcs(int num_columns) {
   columns_.assign(facts_.size(), {});
   for (const OutlineEntry& entry : entries_) {

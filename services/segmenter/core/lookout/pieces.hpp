@@ -33,8 +33,8 @@ struct OutlineEntry {
   LevelPoint far_point{};
 };
 
-/// To 2^-10, a millimetre: half of the resolution of a VLP-16, and far above the rounding of coordinates, which changes as the scene turns. So
-/// nothing stays nothing: the depth of returns of one range, or two returns off the line through them.
+/// Rounds to 2^-10, a millimetre: half of the resolution of a VLP-16, and far above the rounding of coordinates, which changes as the scene turns. So
+/// 0 stays 0: the depth of returns of one range, or the distance of two returns from the line through them.
 inline float FeatureOf(double value) {
   constexpr double kRounder = 1.5 * (std::uint64_t{1} << 42U);  // in a sum with it, 2^-10 is the last place
   return static_cast<float>((value + kRounder) - kRounder);
@@ -68,7 +68,8 @@ class PieceTable {
   /// Cost: proportional to the returns. Allocates nothing once it has seen a scan of that size.
   void Build(const ScanGrid& grid, std::span<const std::int32_t> piece_of_return, std::int32_t count);
 
-  /// The result of Build for the groups in place of the pieces, but for the rounding of sums; computed from the sums of the pieces.
+  /// Makes a piece of each group. The result is that of Build for the groups, but for the rounding of sums; it is computed from the sums of the
+  /// pieces.
   ///
   /// @param group_of_piece  [size()] 0 to count - 1, in the order of the first piece of each
   /// Cost: proportional to the columns of all pieces; the returns are only labelled.

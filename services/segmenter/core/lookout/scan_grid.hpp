@@ -60,7 +60,7 @@ class ScanGrid {
   double ElevationOf(int ring) const { return elevation_rad_[static_cast<std::size_t>(ring)]; }
   /// The angle from a ring to the next, mean of both sides; rings of many lidars are not equally far apart. kLoneRingStepRad where there is one ring.
   double RingStepOf(int ring) const { return ring_step_rad_[static_cast<std::size_t>(ring)]; }
-  /// The same at the ring that is nearest to an elevation.
+  /// RingStepOf the ring that is nearest to an elevation.
   double RingStepAt(double elevation_rad) const;
   static constexpr double kLoneRingStepRad = DegToRad(2.0);
   /// The part of the sphere that beams of a ring see, over the width of a column: RingStepOf in whole microradians, so that sums of it are exact.

@@ -73,7 +73,8 @@ void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
     const int column = seen.column + columns_on;
     return column < grid.num_columns() && RunAt(grid, seen.line, column) == RunAt(grid, seen.line, seen.column);
   };
-  // The ends of runs first: where a drop parts a wall they link it, and for the others nothing is left but the drop.
+  // The last return of each run looks first. Where a drop splits a wall, this already links both sides; the returns before the end then find the drop
+  // alone.
   before_end_.clear();
   for (const Seen& seen : by_line_) {
     if (is_run_at(seen, kLinkColumns)) continue;
@@ -86,7 +87,8 @@ void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
   NameRunsBySet(grid);
   for (const Seen& seen : before_end_) look(seen);
   NameRunsBySet(grid);
-  // Not those that neighbours alone make: a scan in which every other beam meets nothing is no noise, and its cut makes some more.
+  // Runs are counted after they were linked along their line, not as neighbours alone make them: a scan in which every other beam meets nothing is no
+  // noise, and the cut of a scan parts runs too.
   num_runs_ = 0;
   for (std::int32_t run = 0; run < num_runs; ++run) num_runs_ += sets_.Find(run) == run ? 1U : 0U;
 }

@@ -1,4 +1,4 @@
-// The first step of the lookout method: pieces so tight that nothing passes between their returns.
+// Tight pieces: returns so close that nothing passes between them.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace lookout::segmenter {
 
-/// How far apart in columns and rings two returns may lie and be linked. Wider than a neighbour, so that a beam that saw nothing does not cut a hull.
+/// How far apart in columns and rings two linked returns may lie. More than one, so that a beam that saw nothing does not cut a hull.
 inline constexpr int kLinkColumns = 8;        // in a ring: 1.6 degrees at 0.2
 inline constexpr int kLinkAcrossColumns = 4;  // between rings
 inline constexpr int kLinkRings = 2;          // 4 degrees at 2
@@ -52,7 +52,7 @@ class TightPieces {
   }
 
   UnionFind sets_;                    // of runs
-  std::size_t num_runs_ = 0;          // that are not linked in their line
+  std::size_t num_runs_ = 0;          // after linking along the lines
   std::vector<Seen> by_line_;         // the returns, line by line
   std::vector<Seen> before_end_;      // scratch: returns near the end of a run of neighbours
   std::vector<std::int32_t> run_at_;  // [lines x columns] linked returns of a line; ScanGrid::kNone = no return

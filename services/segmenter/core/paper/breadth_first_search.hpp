@@ -1,4 +1,4 @@
-// The third step: neighbouring pixels that show the same surface become one component.
+// The paper's breadth-first search: neighbouring pixels that show the same surface become one component.
 #pragma once
 
 #include <cmath>

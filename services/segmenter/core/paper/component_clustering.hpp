@@ -1,4 +1,4 @@
-// The fourth step: components that belong to one obstacle by direction and distance of their centroids, the paper's "Algorithm 1".
+// The paper's clustering ("Algorithm 1"): components that belong to one obstacle by direction and distance of their centroids.
 //
 // This is a reconstruction. The listing of Algorithm 1 is known from its text only; of three readings that were tried on synthetic scenes, the
 // connected components of the compatibility graph come nearest to the paper's results (lab/eval/README.md, "Measured"). Growing from a seed with a

@@ -1,4 +1,4 @@
-// The second step: returns on a grid of columns and rings, so that neighbours are found without a search.
+// The paper's range image: returns on a grid of columns and rings, so that neighbours are found without a search.
 #pragma once
 
 #include <cstdint>
