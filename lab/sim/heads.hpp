@@ -37,9 +37,6 @@ const Head* FindHead(std::string_view name);
 inline constexpr std::string_view kVlp16Name = "vlp16";
 inline constexpr std::string_view kHiResName = "hi-res";
 
-/// Whether Lidar makes the packets of this head.
-constexpr bool HasPackets(std::string_view name) { return name == kVlp16Name || name == kHiResName; }
-
 /// Names of all heads, those with packets first.
 std::vector<std::string> HeadNames();
 

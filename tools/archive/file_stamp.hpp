@@ -16,9 +16,6 @@ struct FileStamp {
   std::int64_t inode = 0;
 
   bool operator==(const FileStamp&) const = default;
-
-  /// The same file as seen on another computer, or copied with its time.
-  bool IsSameContent(const FileStamp& other) const { return size_bytes == other.size_bytes && modified_ns == other.modified_ns; }
 };
 
 /// Symbolic links are followed. @return nullopt where there is no regular file

@@ -306,12 +306,6 @@ RunSummary Settle(const ArchiveFolder& archive, const Todo& todo, std::ostream& 
 
 }  // namespace
 
-std::vector<std::string> EngineNames() {
-  std::vector<std::string> names{"local"};
-  for (const auto& engine : kEngineScripts) names.emplace_back(engine.name);
-  return names;
-}
-
 std::string EngineText(const std::string& engine) {
   for (const auto& known : kEngineScripts) {
     if (known.name == engine) return std::string(known.script);

@@ -37,8 +37,6 @@ struct RunSummary {
 /// @throws std::invalid_argument for a version, engine or condition that is none; std::runtime_error; io::Stopped
 RunSummary RunUnits(const ArchiveFolder& archive, const RunRequest& request, std::ostream& out);
 
-/// Names of engines, local first.
-std::vector<std::string> EngineNames();
 /// The commands of an engine. @throws std::invalid_argument as RunUnits
 std::string EngineText(const std::string& engine);
 

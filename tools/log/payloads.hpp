@@ -24,8 +24,6 @@ class Payloads {
   /// @param event  its number in the order of the logs, from 0
   void Add(std::int64_t event, const bus::LogEvent& message);
 
-  std::int64_t num_faulty() const { return num_faulty_; }
-
   /// A line, and one more for each channel and fault.
   void Print(std::ostream& out) const;
 

@@ -70,8 +70,6 @@ class LocalMap {
   /// @return nullopt where no point of the map that looks alike lies within `radius_m`
   std::optional<Match> Nearest(const MapPoint& point, double radius_m) const;
 
-  std::size_t num_cubes() const { return cubes_.size(); }
-
  private:
   struct Kept {
     Eigen::Vector3f p_m;

@@ -50,7 +50,6 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void ReadRequest();
   void Handle();
   void Serve(std::string_view path);
-  void ServeAsset(std::string_view path);
   void ServeFromDisk(std::string_view path);
   bool MayCommand();
   void Acknowledge();

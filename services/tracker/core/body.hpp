@@ -128,7 +128,6 @@ class Body {
   Eigen::Vector2d last_jump_m_ = Eigen::Vector2d::Zero();  // of the last new part: from the expected middle to the seen one
   double since_jump_s_ = 0.0;
   bool goes_on_ = false;                                        // the last two jumps went the same way
-  Eigen::Matrix2d frame_turned_ = Eigen::Matrix2d::Identity();  // of the thing's own frame, more than the sides' directions
   Eigen::Vector2d centered_m_ = Eigen::Vector2d::Zero();        // way of the position by Center() since the beginning, in the thing's own frame
   Eigen::Vector2d standing_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d standing_m2_ = Eigen::Matrix2d::Zero();

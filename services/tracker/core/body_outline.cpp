@@ -41,7 +41,7 @@ void Body::Center() {
   }
   standing_ += middle;
   moving_.head<2>() += middle;
-  centered_m_ += (turned_ * frame_turned_).transpose() * middle;
+  centered_m_ += turned_.transpose() * middle;
   for (auto& measured : last_measured_) measured += middle;
 }
 
@@ -114,7 +114,7 @@ std::vector<Eigen::Vector2d> Body::Outline() const {
 
 Eigen::Isometry2d Body::Frame() const {
   Eigen::Isometry2d frame = Eigen::Isometry2d::Identity();
-  frame.linear() = turned_ * frame_turned_;
+  frame.linear() = turned_;
   frame.translation() = position_m() - frame.linear() * centered_m_;
   return frame;
 }
