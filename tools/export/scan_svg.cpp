@@ -56,7 +56,7 @@ struct Outline {
   double distance_m = 0.0;        // of the nearest point
   std::string facts;              // stands in the legend
   std::vector<Vector2d> corners;  // one corner is drawn as a point, two as a line
-  std::string why;                // said where the pointer rests on it
+  std::string why;                // shown where the pointer rests on the outline
 
   bool IsFinite() const {
     return !corners.empty() && std::ranges::all_of(corners, [](const Vector2d& corner) { return corner.allFinite(); });
