@@ -9,8 +9,9 @@ namespace lookout::eval {
 ///
 /// Over (OSE): for each object the entropy of the labels of its returns, where returns in no segment count as one label more; summed over the
 /// objects. Under (USE): for each label the entropy of the objects of its returns, where returns of no object count as one object more; summed over
-/// the labels. Source: M. Oh et al., "TRAVEL: Traversable ground and above-ground object segmentation using graph representation of 3D LiDAR scans",
-/// IEEE RA-L 7 (2022), section IV.
+/// the labels.
+/// Source: M. Oh et al., "TRAVEL: Traversable ground and above-ground object segmentation using graph representation of 3D LiDAR scans", IEEE RA-L 7
+/// (2022), section IV.
 struct LabelEntropy {
   Mean over;
   Mean under;

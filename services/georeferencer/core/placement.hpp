@@ -65,8 +65,8 @@ Eigen::Matrix2d RelativeCovariance(const Eigen::Vector3d& p_vessel_m, const Pose
 ///
 /// @param datum  origin of the map frame; poses with another datum do not count
 /// @return status kOk when the pose is placed at the time of the segment and of each corner of outline and waterline; else kPoseTimeout when one of
-///         these times lies after the newest pose and `has_timed_out`, else kVesselFrameOnly. Without a pose the vessel counts as level. Error: below
-///         1 mm for points nearer than 200 m (property test georeferencer_round_trip).
+///         these times lies after the newest pose and `has_timed_out`, else kVesselFrameOnly. Without a pose the vessel counts as level.
+/// Error: below 1 mm for points nearer than 200 m (property test georeferencer_round_trip).
 Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Datum& datum, bool has_timed_out, const PlacementParams& params);
 
 }  // namespace lookout::georeferencer

@@ -15,7 +15,8 @@ namespace lookout::navigator::filter {
 /// Targets", IEEE AES 1970): a first-order Gauss-Markov process each.
 /// The level frame follows the boat.
 /// @param sample  of the IMU, for the whole interval; nullptr: no IMU
-/// @param time    not before the time of the state Cost: some 2 microseconds.
+/// @param time    not before the time of the state
+/// Cost: some 2 microseconds.
 void Propagate(const ImuSample* sample, Utime time, const FilterParams& params, State& state);
 
 }  // namespace lookout::navigator::filter
