@@ -1,4 +1,4 @@
-// The kind and state of a file of an archive, and the facts by which files are joined to runs.
+// The kind and state of a file of an archive, and the facts by which files are merged to runs.
 #pragma once
 
 #include <cstdint>

@@ -72,7 +72,7 @@ std::vector<std::filesystem::path> InOrderOfTime(std::vector<std::filesystem::pa
 }
 
 // How much later events were logged than measured, where this is more than a live bus explains: the log was recorded while an old log was played.
-// Judged by the first message of the table.
+// The first message of the table decides.
 std::chrono::microseconds AgeOfMessages(const std::vector<std::filesystem::path>& inputs, const std::string& channel) {
   constexpr std::chrono::minutes kUsual(1);
   for (const auto& input : inputs) {
