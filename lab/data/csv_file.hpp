@@ -53,7 +53,7 @@ class CsvFile {
   std::string line_;
   std::vector<std::string_view> cells_;
   std::vector<std::string> names_;  // of the columns that were asked for
-  std::vector<std::size_t> place_;  // of these in a row
+  std::vector<std::size_t> place_;  // of the wanted columns in a row
   std::size_t num_columns_ = 0;
   std::int64_t line_number_ = 0;
 };

@@ -17,7 +17,7 @@ using importer::RefuseByte;
 
 constexpr std::size_t kPointBytes = 16;
 constexpr std::size_t kLabelBytes = 4;
-constexpr float kReflectivityOfWhite = 100.0F;  // per cent, as a VLP-16 says it
+constexpr float kReflectivityOfWhite = 100.0F;  // per cent, as a VLP-16 states it
 
 // semantic-kitti.yaml: 0 "unlabeled", 1 "outlier".
 constexpr std::uint32_t kOutlierClass = 1;

@@ -18,7 +18,7 @@ namespace lookout::data {
 /// Source: A. Geiger et al., "Vision meets Robotics: The KITTI Dataset", IJRR 2013; J. Behley et al., "SemanticKITTI", ICCV 2019.
 PointCloud ReadKitti(const std::filesystem::path& points_file, const std::optional<std::filesystem::path>& label_file);
 
-/// The same of bytes at hand. Names are for errors.
+/// ReadKitti for bytes in memory. The names are for errors.
 PointCloud ParseKitti(std::string_view points, const std::string& points_name, std::optional<std::string_view> labels,
                       const std::string& labels_name);
 

@@ -19,7 +19,7 @@ constexpr int kUsualColumns = 1800;  // of a revolution at 10 Hz: a step of 0.2 
 constexpr int kMinColumns = 360;
 constexpr double kRangeUnitM = 0.002;  // as a VLP-16
 constexpr double kMaxRangeCount = std::numeric_limits<std::uint16_t>::max();
-constexpr double kMinStepRad = 1e-4;  // smaller steps are the rounding of one place
+constexpr double kMinStepRad = 1e-4;  // smaller steps come from rounding of one azimuth
 constexpr std::chrono::microseconds kScanDuration{100'000};
 
 struct Beam {
@@ -79,7 +79,7 @@ bool FindRings(std::vector<Beam>& beams) {
   sorted_rad.reserve(beams.size());
   for (const auto& beam : beams) sorted_rad.push_back(beam.elevation_rad);
   std::ranges::sort(sorted_rad);
-  // From sensors of few rings to those of 128, which are 0.11 degrees apart at the horizon.
+  // From sensors of few rings to sensors of 128 rings, which are 0.11 degrees apart at the horizon.
   for (const double min_gap_deg : {0.5, 0.25, 0.1, 0.05, 0.02}) {
     const auto heaps = HeapsOf(sorted_rad, DegToRad(min_gap_deg));
     if (!heaps) continue;

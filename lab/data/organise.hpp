@@ -13,7 +13,7 @@ struct OrganisedCloud {
   static constexpr std::int32_t kNoCell = -1;
 
   LabelledScan labelled;
-  std::vector<std::int32_t> cell_of_point;  // [points] kNoCell = it has none
+  std::vector<std::int32_t> cell_of_point;  // [points] kNoCell = the point has no cell
   bool are_rings_found = false;             // else they are bands
   std::int64_t num_moved = 0;               // points whose cell was taken, now in the free cell of a neighbouring column
   std::int64_t num_hidden = 0;              // points whose cell and its neighbours were taken: without a cell

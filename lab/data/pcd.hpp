@@ -15,7 +15,7 @@ namespace lookout::data {
 /// @throws PointFileError
 PointCloud ReadPcd(const std::filesystem::path& file);
 
-/// The same of bytes at hand. The name is for errors.
+/// ReadPcd for bytes in memory. The name is for errors.
 PointCloud ParsePcd(std::string_view bytes, const std::string& name);
 
 }  // namespace lookout::data

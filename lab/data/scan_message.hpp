@@ -9,8 +9,8 @@
 
 namespace lookout::data {
 
-/// LIDAR_SCAN in parts split by columns, none larger than `max_message_bytes` unless a single column is. Times are those of the computer: a cloud
-/// of others has none by its sensor.
+/// LIDAR_SCAN in parts split by columns, none larger than `max_message_bytes` unless a single column is. Times are by the computer's clock: clouds of
+/// other programs have no time by the sensor.
 ///
 /// @param model  printable ASCII
 std::vector<lidar_scan_t> ToScanMessages(const segmenter::Scan& scan, const std::string& model, int max_message_bytes);

@@ -101,7 +101,7 @@ void AddPoints(const std::vector<std::string>& files, MethodComparison& comparis
     const auto cloud = ReadPoints(file);
     auto organised = data::Organise(cloud);
     auto& scan = organised.labelled.scan;
-    // As it would come over the bus: a scan that the segmenter would refuse is not scored.
+    // Takes the scan as it would come over the bus: a scan that the segmenter would refuse is not scored.
     auto received = ScanOfMessages(data::ToScanMessages(scan, "recording", bus::kMaxMessageBytes));
     if (!received || received->num_cells() != scan.num_cells()) throw std::runtime_error(file + ": the segmenter refuses this scan");
     scan = std::move(*received);

@@ -52,7 +52,7 @@ RunPlan PlanOf(const ComparisonOptions& options, SeedUse use);
 /// The processor, as Linux names it.
 std::string Computer();
 
-/// Where the weights of SqueezeSeg are: the folder that was asked for, or that of the sources.
+/// Folder of SqueezeSeg's weights: the folder that was asked for, or the folder in the sources.
 std::filesystem::path NetworkFolderOf(const ComparisonOptions& options);
 
 /// Methods by name and group; the boat over time stands behind ours, SqueezeSeg at the end. Where its weights are not there, it is left out, which

@@ -56,7 +56,7 @@ bool IsOfAScan(std::string_view channel) {
          channel == bus::kAlerts.name;
 }
 
-// What a script compares: a row per figure, "-" where it is not known. Of tracks those of the boat's own tracker.
+// Writes figures for scripts: a row per figure, "-" where it is not known. Figures of tracks are of the boat's own tracker.
 void WriteFigures(const LogOptions& options, const Evaluation& evaluation, const std::vector<NamedTable>& tracks) {
   Table table({"figure", "value"});
   table.Add({"scans", Number(evaluation.scan_iou.count)});

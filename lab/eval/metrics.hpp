@@ -42,7 +42,7 @@ void AddMember(Sum& sum, const Sum& other) {
   }
 }
 
-/// The same of each member. @param sums, others  of the same members, by std::tie
+/// AddMember for each member. @param sums, others  of the same members, by std::tie
 template <typename... Member>
 void AddEach(const std::tuple<Member&...>& sums, const std::tuple<const Member&...>& others) {
   [&]<std::size_t... kPlace>(std::index_sequence<kPlace...>) { (AddMember(std::get<kPlace>(sums), std::get<kPlace>(others)), ...); }
@@ -59,23 +59,23 @@ class Confusion {
     std::int64_t num_returns = 0;
     /// The paper's measure: max over segments j of p_ij / (all of object i + all of segment j - p_ij); 0 when none of its returns is in a segment.
     double iou = 0.0;
-    bool has_own_segment = false;     // one of which it holds more than half
-    int num_segments = 0;             // with a return of it
-    int num_parts = 0;                // of these, with a tenth of its returns or more
-    std::int64_t num_in_largest = 0;  // of its returns, in the segment that holds most of them
+    bool has_own_segment = false;     // the object holds more than half of the returns of some segment
+    int num_segments = 0;             // segments with a return of the object
+    int num_parts = 0;                // segments with a tenth of the object's returns or more
+    std::int64_t num_in_largest = 0;  // returns of the object in the segment that holds most of them
   };
   struct Segment {
     std::int64_t num_returns = 0;
     int majority_object = 0;           // with most of the returns; of equals an object before a stray (0) and the own vessel (-1), then the least id
     std::int64_t num_of_majority = 0;  // returns
-    int num_parts = 0;                 // objects of which it holds a tenth or more
+    int num_parts = 0;                 // objects of which the segment holds a tenth or more
     std::map<int, std::int64_t> returns_by_object;  // 0: of none, -1: of the own vessel
     bool has_object = false;
     bool has_own_vessel = false;
   };
   struct Matches {
-    std::map<int, Object> objects;    // by id; those with a return
-    std::map<int, Segment> segments;  // by label; those with a return
+    std::map<int, Object> objects;    // by id; objects with a return
+    std::map<int, Segment> segments;  // by label; segments with a return
   };
 
   /// @param object_id  true object; 0 a stray, -1 the own vessel

@@ -20,7 +20,7 @@
 namespace lookout::eval {
 namespace {
 
-// Of the scans of one head.
+// Size of the scans of one head.
 struct ScanSize {
   int num_rings = 0;
   int num_columns = 0;

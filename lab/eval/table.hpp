@@ -26,7 +26,7 @@ class Table {
   const Row& header() const { return rows_.front(); }
   const std::vector<Row>& rows() const { return rows_; }  // the first is the header
 
-  /// The same cell in each row.
+  /// Adds a column with this cell in each row.
   void AddColumn(const std::string& heading, const std::string& cell);
 
   /// @param columns    indices, in the order of the result
@@ -44,13 +44,13 @@ class Table {
 };
 
 struct NamedTable {
-  std::string name;  // of its file, without ending
+  std::string name;  // name of the table's file, without ending
   std::string title;
   Table table;
   bool is_printed = true;  // else in a file alone: too long for a screen, or of interest to few
 };
 
-/// Those that are not empty and are to be printed, each under its title.
+/// Prints the tables that are not empty and are to be printed, each under its title.
 void PrintTables(const std::vector<NamedTable>& tables, std::ostream& out);
 
 /// CSV files of tables that are measured for a long time: opened before all work, so that a fault shows at once.
@@ -63,7 +63,7 @@ class TableFiles {
   /// @throws std::runtime_error when a file is there and not forced, or cannot be written
   TableFiles(const std::filesystem::path& folder, const std::vector<NamedTable>& tables, bool is_forced);
 
-  /// The same tables in their order, with rows.
+  /// Writes the files. @param tables  the tables of the constructor, in their order, with rows.
   void Commit(const std::vector<NamedTable>& tables);
 
  private:

@@ -54,7 +54,7 @@ struct TruthSpan {
   std::int64_t end_us = 0;
 };
 
-/// Returns of each object in a scan, from the time of its first shot to that of its last.
+/// Returns of each object in a scan, from the time of the scan's first shot to its last.
 using CountReturns = std::function<std::map<int, int>(const TruthSpan& scan)>;
 
 /// Outlines of the objects in one map frame.
@@ -93,7 +93,7 @@ class Truth {
     int object_id;
     /// Lidar frame, without noise; NaN where the files do not say it.
     Eigen::Vector3f p_lidar_m;
-    int column = kNoColumn;  // of the whole scan; where the files say it
+    int column = kNoColumn;  // column of the whole scan, where the files state it
   };
   static constexpr int kNoColumn = -1;
 
@@ -115,7 +115,7 @@ class Truth {
   /// Whether it says where returns lie.
   bool HasPlaces() const { return !returns_.empty() && returns_.front().p_lidar_m.allFinite(); }
 
-  /// Of its poses and returns; nullopt where it has neither.
+  /// Span of the truth's poses and returns; nullopt where there are neither.
   std::optional<TruthSpan> Span() const;
 
   Outlines OutlinesIn(const GeographicLib::LocalCartesian& map) const;

@@ -147,7 +147,7 @@ class Boosting {
   }
   double Value(const Slope& slope) const { return slope.hessian < params_.min_leaf ? 0.0 : -slope.gradient / (slope.hessian + params_.l2); }
 
-  // Of equals the first feature and the lowest threshold.
+  // The best split; among equal splits the first feature and the lowest threshold.
   Split BestSplit() const {
     Split best;
     best.gain = 1e-9 * kTotalWeight;
@@ -241,7 +241,7 @@ class Boosting {
     return loss / weight_of_held_;
   }
 
-  // Of a leaf that no row reaches.
+  // Weight of a leaf that no row reaches.
   static constexpr double kLeastWeight = 1e-6;
 
   const Rows& rows_;
@@ -285,7 +285,7 @@ FittedSum Fit(const Rows& rows, const BoostingParams& params) { return Boosting(
 
 Calibration CalibrationOf(const Rows& rows, std::span<const float> log_odds) {
   constexpr int kSteps = 50;
-  constexpr double kSlack = 1e-6;       // of the Hessian, so that it has an inverse
+  constexpr double kSlack = 1e-6;       // added to the Hessian, so that it has an inverse
   constexpr double kLeastShare = 1e-9;  // of a step: less is rounding
   Calibration best;
   const auto num_true = std::ranges::count(rows.is_true, 1);

@@ -18,7 +18,7 @@ struct BoostingParams {
   double shrinkage = 0.2;  // of the step that each tree would make by itself
   double l2 = 5.0;         // in the unit of weights: kTotalWeight is all rows
   double min_leaf = 2.0;   // sum of weight x p (1 - p) in a leaf; leaves with less add nothing
-  int num_bins = 64;       // thresholds of a feature are so many quantiles of its values
+  int num_bins = 64;       // thresholds of a feature are this many quantiles of its values
   /// Families whose rows are not fitted: trees are added up to where their loss is least. None, or without weight: all trees.
   std::vector<std::string> held_out = {};
   /// Features that no split may ask for, to see their worth.
@@ -34,7 +34,7 @@ struct FittedSum {
   segmenter::NamedSum Named(std::string_view name, std::span<const std::string_view> features) const { return {name, features, bias, trees}; }
 };
 
-/// The same rows give the same trees, to the bit. Leaves along a feature with a sign never go against it. Thresholds, leaves and bias have three
+/// Equal rows give equal trees, to the bit. Leaves along a feature with a sign never go against it. Thresholds, leaves and bias have three
 /// significant digits, and are rounded before the next tree is fitted.
 ///
 /// Cost: rows x features x trees, about 1 s for a million rows, 20 features and 10 trees. Memory: a byte for each value besides.
@@ -59,7 +59,7 @@ float Rounded(double value);
 /// How well a sum tells rows.
 struct Score {
   double loss = 0.0;        // mean of -ln(probability of the true answer), in the balance of the weights
-  double auc = 0.0;         // probability that a true row has higher log odds than one that is not; NaN where all are the same
+  double auc = 0.0;         // probability that a true row has higher log odds than a false row; NaN where all rows are true, or all false
   double true_share = 0.0;  // of the weight
   std::size_t num_rows = 0;
 };

@@ -9,7 +9,7 @@
 namespace lookout::fit {
 
 struct Options {
-  std::string command;  // as it was given
+  std::string command;  // command line, as it was given
   std::filesystem::path config_folder;
   std::vector<std::string> scenes;
   std::vector<std::string> lidars;  // RunPlan::lidars

@@ -30,16 +30,16 @@ struct FittedEvidence {
   std::map<std::string, double> miou;
   std::set<std::string> without;
 
-  /// The same parameters with this evidence.
+  /// Parameters with this evidence in place of theirs.
   segmenter::Params In(segmenter::Params params) const;
 };
 
-/// Fits the sums one after the other, each on the rows that the method makes of the scans with those before it.
+/// Fits the sums one after the other, each on the rows that the method makes of the scans with the sums fitted before.
 ///
-/// @param params   of the segmenter; its evidence is not looked at
-/// @param without  families whose scans are not fitted on
+/// @param params   of the segmenter; its evidence is not used
+/// @param without  families whose scans are left out of the fit
 /// @param tell     progress, for people
-/// The same scans give the same evidence. Cost: six times that of the method, and that of five fits.
+/// Equal scans give equal evidence. Cost: that of six runs of the method and of five fits.
 FittedEvidence FitEvidence(std::span<const TrainingScan> scans, const segmenter::Params& params, const BoostingParams& boosting,
                            const std::set<std::string>& without, const std::function<void(const std::string&)>& tell);
 

@@ -12,7 +12,7 @@ namespace lookout::fit {
 
 struct Feature {
   std::string_view name;  // outlives the rows
-  int sign = 0;           // +1: the more of it, the more likely; -1: the less; 0: either, or in between
+  int sign = 0;           // +1: the greater the feature, the more likely true; -1: the less likely; 0: no rule
 };
 
 struct Rows {
@@ -33,7 +33,7 @@ struct Rows {
 /// Scales the weights: each scan of a family counts the same, however many rows it has, each family the same, and all are kTotalWeight.
 void BalanceWeights(Rows& rows);
 
-/// The same weight for each row, and ten times kTotalWeight for all. For probabilities: each segment counts once, as it does on the boat. Ten times,
+/// Gives each row the same weight, in sum ten times kTotalWeight. For probabilities: each segment counts once, as it does on the boat. Ten times,
 /// as most rows are single drops, and the rest must still reach leaves of its own.
 void WeighAlike(Rows& rows);
 

@@ -16,7 +16,7 @@ struct Sign {
   int sign;
 };
 
-// Of two pieces: more between them, less likely one.
+// Features of two pieces: the greater the gap, the less likely the pieces are one.
 constexpr std::array<Sign, 7> kPairSigns{
     {{"gap_m", -1}, {"free_gap_m", -1}, {"gap_deg", -1}, {"radial_gap_m", -1}, {"rise_gap_deg", -1}, {"seen_through", -1}, {"faced", +1}}};
 constexpr std::array<Sign, 1> kLandSigns{{{"length_m", +1}}};

@@ -25,14 +25,14 @@ std::vector<Feature> FeaturesOf(std::size_t sum);
 struct PieceTruth {
   std::int32_t object = data::kNoTrueObject;  // clutter and the own vessel: kNoTrueObject
   std::int32_t num_returns = 0;
-  std::int32_t num_of_object = 0;  // all returns of that object in the scan; of clutter, its own
+  std::int32_t num_of_object = 0;  // returns of that object in the scan; for clutter, the group's own returns
 };
 
 /// How much a wrong answer costs, as the fall of IoU of the objects that it touches. Two pieces of one object: the lesser is lost to it, a share of
 /// its returns. Pieces of two: the lesser is lost to its object, and what takes it in is diluted by it. Clutter has nothing to lose. So a small piece
 /// of a quay counts little, and a boat all of whose returns it is counts whole.
 float PairWeight(const PieceTruth& one, const PieceTruth& other);
-/// Of fewer returns than this no object is said to consist: a single one is half of a thing.
+/// An object counts as having at least this many returns: a single return is half of a thing.
 inline constexpr int kLeastObject = 2;
 /// Chosen by leaving families out, as the form of the weight (DECISIONS.md).
 inline constexpr float kLeastWeight = 0.005F;

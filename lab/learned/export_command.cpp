@@ -45,7 +45,7 @@ std::vector<Row> RowsOf(std::int32_t scan_number, const eval::LabelledScan& trut
   return rows;
 }
 
-// Of each row.
+// Probabilities of each row.
 std::vector<OfClasses> ProbabilitiesOf(const Network& network, std::span<const Row> rows, const Views& views) {
   std::vector<OfClasses> probabilities;
   probabilities.reserve(rows.size());

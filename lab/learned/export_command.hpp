@@ -15,11 +15,11 @@ struct Options {
   int num_seeds = 90;
   double seconds = 0.2;           // of each scene and seed
   std::filesystem::path out;      // folder
-  std::filesystem::path weights;  // NAME.json of a trained network: its probabilities are written, too; empty: none
+  std::filesystem::path weights;  // NAME.json of a trained network, whose probabilities are written, too; empty: none
   bool is_forced = false;         // files that are there are replaced
 };
 
-/// Writes scans.csv and returns.bin (README), and with `weights` probabilities.bin. The same options give the same bytes.
+/// Writes scans.csv and returns.bin (README), and with `weights` probabilities.bin. Equal options give equal bytes.
 ///
 /// @return the exit code
 /// @throws config::ConfigError, std::invalid_argument for mistakes of the user; std::runtime_error

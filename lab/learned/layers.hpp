@@ -1,4 +1,4 @@
-// The layers of SqueezeSeg: images in, images out, in single precision. The same bytes on any processor: each value sums up its products in one
+// The layers of SqueezeSeg: images in, images out, in single precision. Equal bytes on any processor: each value sums up its products in a fixed
 // order.
 #pragma once
 
@@ -83,7 +83,7 @@ class Deconvolution {
 /// The greatest of 3 x 3 pixels, at every second column. Precondition: no value is below 0
 Image MaxPool(const Image& image);
 
-/// Channels of one behind those of the other. Precondition: the same rows and columns
+/// Channels of `one`, then channels of `other`. Precondition: equal rows and columns
 Image Joined(Image one, const Image& other);
 
 /// Precondition: the same shape

@@ -80,7 +80,7 @@ std::int64_t Fire::MultiplyAdds(int num_rows, int num_input_columns) const {
          expand_1_.MultiplyAdds(num_rows, num_columns) + expand_3_.MultiplyAdds(num_rows, num_columns);
 }
 
-// Members take their weights in the order in which they are declared, which is that of the file.
+// Members take their weights in the order of their declaration, which is the order of the file.
 Network::Network(const Weights& weights) : Network(weights, weights.values) {}
 
 Network::Network(const Weights& weights, std::span<const float> rest)

@@ -49,10 +49,10 @@ class Network {
   /// @throws std::runtime_error when there are more or fewer weights than the network has
   explicit Network(const Weights& weights);
 
-  /// The probabilities of the classes of each pixel. The same pixels give the same bytes on one C library (exponential functions).
+  /// The probabilities of the classes of each pixel. Equal pixels give equal bytes with one C library (exponential functions).
   std::vector<OfClasses> Classify(std::span<const ViewPixel> pixels, int num_rows) const;
 
-  /// Of a view, without the random field.
+  /// Multiplications with additions for a view, without the random field.
   std::int64_t MultiplyAdds(int num_rows) const;
 
  private:

@@ -9,11 +9,11 @@ namespace {
 
 struct Neighbour {
   std::size_t index;
-  float angle;     // weights of its message
+  float angle;     // weights of the message from this neighbour
   float position;  // and by angle
 };
 
-// Of each pixel its neighbours, row by row.
+// The neighbours of each pixel, row by row.
 std::vector<std::vector<Neighbour>> NeighboursOf(std::span<const CrfPixel> pixels, int num_rows, int num_columns) {
   constexpr std::int32_t kEmpty = -1;
   std::vector<std::int32_t> index_at(static_cast<std::size_t>(num_rows) * static_cast<std::size_t>(num_columns), kEmpty);

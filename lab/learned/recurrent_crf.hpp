@@ -11,7 +11,7 @@ namespace lookout::learned {
 enum class Class : std::uint8_t { kClutter, kThing, kLand };
 inline constexpr int kNumClasses = 3;
 
-/// Of a pixel: log odds up to a constant, or probabilities.
+/// Values of the classes at a pixel: log odds up to a constant, or probabilities.
 using OfClasses = std::array<float, kNumClasses>;
 
 /// The probabilities that log odds stand for.

@@ -31,7 +31,8 @@ struct Views {
 /// Places the returns of a scan in the views. Returns that share a pixel with a nearer one are not seen by the network. Cost: one pass.
 Views ProjectToViews(const segmenter::Scan& scan, std::span<const segmenter::Return> returns);
 
-/// What the network sees of a return, in the frame of a view (x forward along its centre, y left, z up): each view looks like the one ahead.
+/// The network's input for a return, in the frame of a view (x forward along the view's centre, y left, z up): so each view looks like the view
+/// ahead.
 ///
 /// @param view  0 to 3
 std::array<float, kNumChannels> ChannelsOf(const segmenter::Scan& scan, const segmenter::Return& one, int view);

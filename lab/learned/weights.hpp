@@ -21,7 +21,7 @@ struct Weights {
 /// @param about    the text of NAME.json
 /// @param payload  the bytes of NAME.f16: floats of 16 bits
 /// @throws std::runtime_error with the reason: a member is missing or of another type, a number is not finite or a deviation not positive, the digest
-///         is that of other weights
+///         belongs to other weights
 Weights ParseWeights(const std::string& about, const std::string& payload);
 
 /// Reads NAME.json and NAME.f16 beside it. @throws std::runtime_error "file: reason" as ParseWeights, or where a file cannot be read

@@ -25,7 +25,7 @@ class Birds {
 
  private:
   struct Bird {
-    Eigen::Vector2d start_m;  // or the centre of its circle
+    Eigen::Vector2d start_m;  // start, or centre of the bird's circle
     double radius_m;          // 0 = straight on
     double heading_rad;       // counter-clockwise from east, at the start
     double speed_mps;

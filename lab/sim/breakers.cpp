@@ -41,7 +41,7 @@ Breakers::Breakers(double per_hectare, const Sea& sea, std::uint64_t seed)
   towards_ = {std::cos(angle_rad), std::sin(angle_rad)};
 }
 
-// Sizes: from what a gust makes on a lake to a breaker that a small boat avoids.
+// Sizes: from a crest that a gust makes on a lake to a breaker that a small boat avoids.
 void Breakers::AddBornIn(std::int64_t column, std::int64_t row, std::int64_t slot, double time_s) {
   Random random(seed_, StreamOf(column, row, slot));
   const double mean = per_hectare_ * (kTileM * kTileM / kSquareMetresPerHectare) * (kSlotS / kMeanLifeS);
@@ -103,7 +103,7 @@ std::optional<Echo> Breakers::FirstEcho(const Ray& ray, double max_range_m) {
     const double discriminant = b * b - 4.0 * a * c;
     if (discriminant < 0.0) continue;
     const double root = std::sqrt(discriminant);
-    // Both roots in the form that does not divide by a small a.
+    // Both roots, in the form that does not divide by a small `a`.
     const double q = -0.5 * (b + (b < 0.0 ? -root : root));
     for (const double range_m : {q != 0.0 ? c / q : -1.0, a != 0.0 ? q / a : -1.0}) {
       if (range_m <= 0.5 || range_m >= nearest_m) continue;

@@ -36,13 +36,13 @@ class Breakers {
     Eigen::Vector2d middle_m;  // map
     Eigen::Vector2d towards;   // unit vector
     double half_length_m;
-    double bend_m;       // how far its middle runs ahead of its ends
-    double height_m;     // now; 0 = only its foam is left
+    double bend_m;       // how far the breaker's middle runs ahead of its ends
+    double height_m;     // present height; 0 = only foam is left
     double thickness_m;  // along the way
-    double strength;     // chance of a return from a shot that meets it
+    double strength;     // chance of a return from a shot that meets the breaker
     double speed_mps;
-    double way_m;       // that it has gone while it broke
-    double foam_age_s;  // since it ceased
+    double way_m;       // way of the breaker while it broke
+    double foam_age_s;  // age of the foam since the breaker ceased
   };
   void AddBornIn(std::int64_t column, std::int64_t row, std::int64_t slot, double time_s);
 

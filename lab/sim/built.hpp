@@ -1,4 +1,4 @@
-// What is built over the water and stands on the ground.
+// Structures over the water that stand on the ground.
 #pragma once
 
 #include "lab/sim/fleet.hpp"

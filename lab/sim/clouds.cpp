@@ -17,7 +17,7 @@ constexpr std::uint64_t kPlumeStream = 24;
 
 constexpr double kNearestM = 0.5;
 
-// Churn: nothing from a hull that displaces its water quietly; what is thrown up grows with speed up to that of planing.
+// Churn: a hull that displaces its water quietly throws up nothing; above, the amount grows up to the speed of planing.
 constexpr double kQuietMps = 1.2;
 constexpr double kFullMps = 5.0;
 constexpr double kChurnPeriodS = 1.1;  // puffs, as waves come
@@ -130,8 +130,8 @@ std::optional<double> Clouds::RangeInto(const Cloud& cloud, const Ray& ray, doub
   return range_m;
 }
 
-// Banks that drift: the chance swings with bearing, height of the beam and time. Ranges are those of a sum of three exponential ways: few at the
-// lens, most about two thirds of the mean, a tail to three times it.
+// Banks that drift: the chance swings with bearing, height of the beam and time. Ranges are distributed as a sum of three exponential ways: few at
+// the lens, most at about two thirds of the mean, with a tail to three times the mean.
 std::optional<double> Clouds::FogRange(const Ray& ray_map, double max_range_m) {
   const double draw = random_.Uniform();
   if (draw >= effects_.fog_probability()) return std::nullopt;

@@ -20,13 +20,13 @@ class Clouds {
 
   void MoveTo(double time_s);
 
-  /// What the first drop on the way gives, the same ray in the map and in the vessel frame. Drops are seen at any incidence.
+  /// The echo of the first drop on the way of a ray, which is given in the map and in the vessel frame. Drops are seen at any incidence.
   std::optional<Echo> FirstEcho(const Ray& ray_map, const Ray& ray_vessel, double max_range_m);
 
  private:
   struct Cloud {  // an ellipsoid
     Eigen::Vector3d center_m;
-    Eigen::Vector3d radii_m;  // along ahead, across it, up
+    Eigen::Vector3d radii_m;  // along `ahead`, across `ahead`, up
     Eigen::Vector2d ahead;    // unit vector
     double density_per_m;     // chance of a drop's return per metre of beam
     ReturnReason reason;

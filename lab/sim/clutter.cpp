@@ -17,7 +17,7 @@ constexpr std::uint64_t kClutterStream = 6;
 // Hale and Querry, "Optical constants of water in the 200-nm to 200-um wavelength region", Applied Optics 12, 1973: 1.328 at 0.9 um.
 constexpr double kRefractiveIndex = 1.328;
 
-// What comes back out of clear water near the surface: some per cent.
+// Share of light that comes back out of clear water near the surface: some per cent.
 constexpr double kWaterReflectance = 0.03;
 
 // Incidence for which Effects::glint_probability is said: the lowest beam, 15 deg below level.
@@ -31,7 +31,7 @@ constexpr double kFirstDropM = 0.5;
 
 // Kelvin's wedge: asin(1 / 3) to either side on deep water (Lamb, "Hydrodynamics", article 256).
 constexpr double kKelvinTangent = 0.35355339059327379;
-// Of a return from the fresh patch of a wave that broke there: flat, so seldom seen, but for seconds at one place.
+// Chance of a return from the fresh patch of a wave that broke: the patch is flat, so it is seldom seen, but stays at one place for seconds.
 constexpr double kPatchProbability = 0.3;
 constexpr double kArmHalfWidthM = 0.35;
 constexpr double kStripSpreadMps = 0.1;  // of the strip of foam behind the stern, to either side

@@ -32,13 +32,13 @@ class Clutter {
   /// Wakes and spray are where they are at `time_s`, to kPeriodS.
   void MoveTo(double time_s);
 
-  /// What drops give on the way along a ray to `max_range_m`. They are seen at any incidence.
+  /// The echo of drops on the way along a ray to `max_range_m`. Drops are seen at any incidence.
   std::optional<Echo> FromDrops(const Ray& ray_vessel, double max_range_m);
 
-  /// What the water gives to a ray that goes down and meets nothing else before `max_range_m`.
+  /// The echo of the water for a ray that goes down and meets nothing else before `max_range_m`.
   std::optional<Echo> FromWater(const Ray& ray, double max_range_m);
 
-  /// Waves that break and birds: what they hide is not met.
+  /// Breaking waves and birds: a ray does not meet the things that they hide.
   std::optional<Echo> FromBreakersAndBirds(const Ray& ray, double max_range_m);
 
   /// Churned water, plumes and fog, as FromDrops.

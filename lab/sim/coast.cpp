@@ -25,7 +25,7 @@ bool IsUpright(config::Scene::Edge edge) {
   return edge == config::Scene::FACE || edge == config::Scene::FENDERED || edge == config::Scene::SHEET_PILES;
 }
 
-// Ranges of the sizes of edges: drawn, from what is common at lakes and harbours.
+// Ranges from which the sizes of edges are drawn: those common at lakes and harbours.
 Stretch DrawStretch(const Land& land, double wall_top_m, double depth_m, Random& random) {
   using config::Scene;
   Stretch stretch;
@@ -104,7 +104,7 @@ Section DrawSection(const Stretch& stretch, double depth_m, Random& random) {
   const double run_m = is_upright ? 0.0 : std::min(stretch.run_m, 0.7 * depth_m) * (1.0 + uneven * random.Uniform(-1.0, 1.0));
   Section section{};
   const double top_m = stretch.top_m * (1.0 + uneven * random.Uniform(-1.0, 1.0)) * (is_upright ? 1.0 : std::min(1.0, run_m / stretch.run_m + 0.2));
-  const double under_m = is_upright ? 0.0 : std::min(0.7, run_m);  // below the water, so that a trough bares it
+  const double under_m = is_upright ? 0.0 : std::min(0.7, run_m);  // the edge goes on below the water, where a trough bares it
   const double top_inland_m = is_upright ? std::min(0.4, 0.5 * depth_m) : run_m;
   const double knee_m = top_inland_m + random.Uniform(0.2, 0.6) * (depth_m - top_inland_m);
   section.inland_m = {-under_m, 0.5 * run_m, top_inland_m, knee_m, depth_m};

@@ -16,7 +16,7 @@ struct Coast {
   SceneObject object;             // without id, name and way
   Line line_m;                    // the waterline without its bays, object frame
   std::size_t num_front = 0;      // so many vertices of the outline, from the first, lie at the water
-  std::vector<double> reach_m{};  // of these: how far reeds, boulders or fenders stand out of the waterline
+  std::vector<double> reach_m{};  // [vertices of line_m] how far reeds, boulders or fenders stand out of the waterline
 };
 
 /// Along a line that bends as `land` says. Frame: the origin is the middle of the line, x runs along it there, land is on the side of positive y.

@@ -16,10 +16,10 @@ constexpr double kRoughStepM = 2.5;  // between vertices of a waterline with bay
 constexpr double kPlainStepM = 8.0;  // and without
 constexpr double kArcStepRad = DegToRad(12.0);
 constexpr int kNumBendTries = 20;
-constexpr double kMostLengthM = 5000.0;    // a longer one hardly fits into a message of the truth, and its bends take minutes to try
+constexpr double kMostLengthM = 5000.0;    // a longer line hardly fits into a message of the truth, and its bends take minutes to try
 constexpr double kMostBayOfLength = 0.25;  // from one bay to the next: their sides then run at some 60 deg to the shore
 constexpr double kLeastDepthM = 1.0;
-constexpr double kMostBayOfRadius = 0.35;  // of a closed line, which so stays simple
+constexpr double kMostBayOfRadius = 0.35;  // of a closed line, so that the line does not cross itself
 
 Vector2d LeftOf(const Vector2d& v) { return {-v.y(), v.x()}; }
 

@@ -10,7 +10,7 @@ struct WaterlineVertex {
   Eigen::Vector2d place_m;
   Eigen::Vector2d inland;  // unit vector, square to the line without its bays
   double along_m;          // from the first
-  double max_depth_m;      // so far inland the line's other parts are about as far away as this one
+  double max_depth_m;      // this far inland, other parts of the line are about as near as this one
 };
 
 /// With bends, their middle at the origin along x. Bends that would bring the line back to itself are left out.
@@ -26,7 +26,7 @@ std::vector<WaterlineVertex> WithBays(const Line& line_m, bool is_closed, const 
 /// A value or a range, else from `low` to `high`.
 double DrawNumber(const google::protobuf::RepeatedField<double>& numbers, double low, double high, Random& random);
 
-/// One of the numbers 0 to `count` - 1.
+/// Draws one of the numbers 0 to `count` - 1.
 int DrawIndex(int count, Random& random);
 
 }  // namespace lookout::sim

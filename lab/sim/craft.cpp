@@ -81,7 +81,7 @@ struct Hull {
 
 // Flared, higher at the bow; open on top or decked.
 Hull AddHull(const HullPlan& plan, double rail_m, bool is_open, const Material& paint, Model& model) {
-  // What leans in must not meet in the middle above the bottom. Long hulls bridge troughs.
+  // Walls that lean in must not meet in the middle above the bottom. Long hulls bridge troughs.
   const double lean = std::min(model.Between(0.05, 0.5), 0.3 * plan.width_m / (rail_m + 0.15 + 0.08 * plan.length_m));
   LeaningWalls hull = HullWalls(plan, lean, -0.15 - 0.03 * plan.length_m, rail_m, model.Between(0.0, 0.09));
   const double floor_m = is_open ? std::min(model.Between(0.05, 0.25), rail_m - 0.1) : rail_m;

@@ -1,4 +1,4 @@
-// What leaves the boat's network: a datagram and when.
+// A datagram on the boat's network, and its time.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace lookout::sim {
 
 struct Datagram {
-  Utime time;    // at which it reaches the host
+  Utime time;    // when the datagram reaches the host
   int port = 0;  // UDP destination
   std::vector<std::uint8_t> payload;
 };

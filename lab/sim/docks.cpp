@@ -28,7 +28,7 @@ struct Build {
   bool is_floating;
   double pile_spacing_m;
   double pile_radius_m;
-  double pile_over_deck_m;  // how far piles stand out; negative = they end under it
+  double pile_over_deck_m;  // how far piles stand out of the deck; negative = they end under it
   double rail_probability;
   Material deck;
   Material pile;
@@ -55,7 +55,7 @@ void AddDeck(const Deck& deck, const Build& build, Model& model) {
   const bool along_x = deck.runs_along_x();
   const double length_m = along_x ? deck.max_x_m - deck.min_x_m : deck.max_y_m - deck.min_y_m;
   const double width_m = along_x ? deck.max_y_m - deck.min_y_m : deck.max_x_m - deck.min_x_m;
-  // Piles in pairs; of what floats on one side, where they hold it.
+  // Piles stand in pairs; floating docks have piles on one side, where these hold the dock.
   const int num_gaps = std::max(1, static_cast<int>(std::floor((length_m - 0.5) / build.pile_spacing_m)));
   const double in_share = std::min(build.pile_radius_m / width_m, 0.45);
   for (int i = 0; i <= num_gaps; ++i) {

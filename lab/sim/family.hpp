@@ -1,4 +1,4 @@
-// What makes a scene a family: numbers drawn between two of the file, members drawn from several kinds, places at the edge of others.
+// Scenes that are families: numbers are drawn between two numbers of the file, members from several kinds, places at the edges of other objects.
 #pragma once
 
 #include <map>
@@ -15,16 +15,17 @@ namespace lookout::sim {
 /// @return the scene with its own boat and objects as in one of its layouts, drawn by weight: objects of others have the chance 0
 config::Scene WithDrawnLayout(const config::Scene& scene, std::uint64_t seed);
 
-/// @return own_boat with what the layout says of it
+/// @return own_boat with the layout's values for it
 config::Scene::OwnBoat OwnBoatIn(const config::Scene::Layout& layout, const config::Scene::OwnBoat& own_boat);
 
-/// @return the scene with each number of own_boat_to, sea_to and effects_to (of several one) drawn between that of own_boat, sea and effects and it
+/// @return the scene with each number of own_boat_to, sea_to and effects_to (of several one) drawn between the number of own_boat, sea or effects and
+///         this number
 config::Scene WithDrawnNumbers(const config::Scene& scene, std::uint64_t seed);
 
-/// @return one of `one_of`, drawn by weight, with what the object says besides; the object itself where it has no one_of
+/// @return one of `one_of`, drawn by weight, merged with the object's other fields; the object itself where it has no one_of
 config::Scene::Object DrawMember(const config::Scene::Object& object, Random& random);
 
-/// Each of `one_of` with what the object says besides; the object itself where it has none.
+/// Each of `one_of`, merged with the object's other fields; the object itself where it has no one_of.
 config::Scene::Object MergedWith(const config::Scene::Object& object, const config::Scene::Object& one);
 
 /// By which things lie beside the own boat, or abeam of it, where it is placed before them.
@@ -48,17 +49,17 @@ class Edges {
   };
   struct Found {
     Placement placement;
-    std::size_t object = 0;     // beside which it lies, as given to Add
-    double least_gap_m = 0.0;   // to keep from it
-    double next_along_m = 0.0;  // of the row, when it may lie here
+    std::size_t object = 0;     // object beside which the member lies, as given to Add
+    double least_gap_m = 0.0;   // least gap to that object
+    double next_along_m = 0.0;  // next free place along the row, if the member may lie here
     double to_land_m = 0.0;     // of an object that begins at the edge and runs out from it: how far the waterline lies behind that, at most
   };
 
-  /// A try: whether something else lies there is not looked at.
+  /// One try: whether something else lies there is not checked.
   ///
-  /// @param outline_m    of what is to lie there, its own frame
+  /// @param outline_m    of the object to be placed, in its own frame
   /// @param heading_rad  of Turned ANY
-  /// @param member       which of a count it is, for is_each
+  /// @param member       number of the member in its count, for is_each
   /// @return nullopt where the row has come to its end, or there is no edge for this member
   std::optional<Found> Draw(const config::Scene::Beside& beside, const std::vector<Eigen::Vector2d>& outline_m, double heading_rad, int member,
                             Row& row, Random& random) const;
@@ -66,7 +67,7 @@ class Edges {
  private:
   struct Edge {
     std::size_t object = 0;
-    std::vector<Eigen::Vector2d> points_m;  // the first again at the end of a closed one
+    std::vector<Eigen::Vector2d> points_m;  // a closed line ends with its first point
     std::vector<double> reach_m;            // of each, or none
     double length_m = 0.0;
   };

@@ -93,7 +93,7 @@ const TimedFault* FaultPlan::LastBegun(TimedFaultKind kind, Utime time) const {
   return last;
 }
 
-// Those of a kind do not overlap, so none but the last that has begun can be on.
+// Faults of a kind do not overlap, so only the last that has begun can be on.
 const TimedFault* FaultPlan::At(TimedFaultKind kind, Utime time) const {
   const auto* last = LastBegun(kind, time);
   return last != nullptr && time < End(*last) ? last : nullptr;

@@ -1,4 +1,4 @@
-// Faults that are ordered for a part of a run: KIND:BEGIN:END[:VALUE]. What each does to its sensor: README.md.
+// Faults that are ordered for a part of a run: KIND:BEGIN:END[:VALUE]. README.md says what each fault does to its sensor.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ enum class TimedFaultKind {
 /// How a kind is written on the command line and in faults.csv.
 struct TimedFaultForm {
   std::string_view name;
-  std::string_view unit;  // of the value, for people; empty = it has none
+  std::string_view unit;  // unit of the value, for people; empty = the kind has no value
   std::optional<double> default_value{};
   double min_value = 0.0;
   double max_value = 0.0;

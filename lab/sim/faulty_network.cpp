@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr std::uint64_t kFaultStream = 6;
 
-// What comes right behind a data packet comes so much later: its frame of 1248 bytes takes 100 us at 100 Mbit/s. Packets are more than 600 us
+// A datagram right behind a data packet comes this much later: its frame of 1248 bytes takes 100 us at 100 Mbit/s. Packets are more than 600 us
 // apart, also in dual return.
 constexpr std::chrono::microseconds kFrameTime = 100us;
 
@@ -86,7 +86,7 @@ std::optional<Datagram> FaultyNetwork::Pass(Datagram datagram) {
   return datagram;
 }
 
-// One number a packet, so that the fate of a packet does not depend on that of the one before.
+// One number a packet, so that the fate of a packet does not depend on the fate of the packet before.
 std::optional<FaultKind> FaultyNetwork::Draw(Utime time) {
   const double number = random_.Uniform();
   if (time < first_fault_ || time > last_fault_) return std::nullopt;

@@ -29,10 +29,10 @@ inline constexpr std::array<std::string_view, 3> kFaultNames{"dropped", "doubled
 struct Fault {
   FaultKind kind = FaultKind::kDropped;
   Utime time;                     // at which the packet would have come
-  std::int64_t packet_index = 0;  // among the data packets made, from 0; of two that change places the one that comes late
+  std::int64_t packet_index = 0;  // among the data packets made, from 0; of two packets that change places the one that comes late
 };
 
-/// Of data packets. Once a run has ended, num_sent = num_made - num_dropped + num_doubled.
+/// Numbers of data packets. Once a run has ended, num_sent = num_made - num_dropped + num_doubled.
 struct FaultTotals {
   std::int64_t num_made = 0;
   std::int64_t num_sent = 0;
@@ -75,7 +75,7 @@ class FaultyNetwork {
   Random random_;
   std::optional<Datagram> next_;       // from the source, not yet looked at
   std::optional<Datagram> overtaken_;  // goes behind the next data packet
-  std::deque<Datagram> following_;     // copies and those that were overtaken; by time
+  std::deque<Datagram> following_;     // copies, and packets that were overtaken; by time
   FaultTotals totals_;
 };
 

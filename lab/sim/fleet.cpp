@@ -207,7 +207,7 @@ SceneObject MakeObject(const KindOfObject& kind, const Size& size, Random& rando
     return object;
   }
   kind.make(size, object);
-  // What has no length is round.
+  // An object without a length is round.
   if (kind.is_afloat) object.waterline_m = {size.length_m > 0.0 ? size.length_m : size.width_m, size.width_m};
   return object;
 }

@@ -1,4 +1,4 @@
-// What floats and what is built: boats, swimmers, buoys, markers, docks, piers and walls (sizes are those of common craft, rounded); and land: a bank
+// Floating and built things: boats, swimmers, buoys, markers, docks, piers and walls (sizes of common craft, rounded); and land: a bank
 // along an irregular waterline, rising ground behind it, and trees.
 #pragma once
 
@@ -13,10 +13,10 @@ namespace lookout::sim {
 
 class Model;
 
-/// Of an object. 0 where its kind has no such size.
+/// Size of an object. 0 where its kind has no such size.
 struct Size {
   double length_m = 0.0;  // along x
-  double width_m = 0.0;   // along y; of round things the diameter
+  double width_m = 0.0;   // along y; diameter of round things
   double height_m = 0.0;  // above the water
   double reflectance = 0.0;
 };
@@ -24,15 +24,14 @@ struct Size {
 /// A kind of object and how to make one: always the same one, or one that a seed draws.
 struct KindOfObject {
   std::string_view name;  // as in scene files, lower case
-  Size usual;             // 0 = the kind has no such size; of a drawn one the greatest that is drawn
+  Size usual;             // 0 = the kind has no such size; for a drawn kind the greatest size
   bool is_in_water;       // a boat, swimmer, buoy or marker
   bool is_afloat;         // rides the waves
-  // One of these three.
-  /// Makes parts and outline.
+  // A kind has one of make, draw and one_of. This one makes parts and outline.
   void (*make)(const Size& size, SceneObject& object);
-  /// Draws parts and waterline, and every size that is 0. What it leaves without an outline has one round all parts.
+  /// Draws parts and waterline, and every size that is 0. An object without an outline then gets one round all parts.
   void (*draw)(const Size& size, Model& model) = nullptr;
-  /// Names of the kinds of which the seed draws one. Those of many forms come more often.
+  /// Names of the kinds of which the seed draws one. Kinds of many forms come more often.
   std::span<const std::string_view> one_of = {};
 
   bool is_drawn() const { return make == nullptr; }
@@ -41,7 +40,7 @@ struct KindOfObject {
 /// All kinds but shores and islands.
 std::span<const KindOfObject> Kinds();
 
-/// @param size  with what is not given: usual sizes, 0 of a drawn kind
+/// @param size  sizes that are not given are the usual ones, 0 for a drawn kind
 /// @return an object of this kind without id, name and way
 SceneObject MakeObject(const KindOfObject& kind, const Size& size, Random& random);
 

@@ -1,4 +1,4 @@
-// What foam and drops give back, and how long foam lasts: shared by wakes, crests, breakers and clouds.
+// How much light foam and drops give back, and how long foam lasts: shared by wakes, crests, breakers and clouds.
 #pragma once
 
 namespace lookout::sim {

@@ -24,7 +24,7 @@ constexpr Material kIron{0.3};
 constexpr Material kCarPaint{0.4};
 constexpr Material kClothes{0.4};
 
-// Sizes in this file are drawn from what is common ashore. So many parts at most, as a scene's time goes with them.
+// Sizes in this file are drawn from common sizes ashore. Numbers of parts are bounded, as the time for a scene grows with them.
 constexpr int kMaxReeds = 220;
 constexpr int kMaxTrees = 90;
 constexpr int kMaxFolds = 120;
@@ -190,7 +190,7 @@ double AddSheetPiles(const Stretch& stretch, const Ground& ground, Gardener& gar
   const double out_share = random.Uniform(0.35, 0.6);
   const int num_folds = gardener.Count(random.Uniform(1.0, 1.5), kMaxFolds);
   const double fold_m = out_share * stretch.length_m / std::max(num_folds, 1);
-  const double beam_m = random.Uniform(0.0, 0.4);  // above them
+  const double beam_m = random.Uniform(0.0, 0.4);  // height of the beam above the piles
   for (int i = 0; i < num_folds; ++i) {
     const double vertex = gardener.At((i + 0.5) / num_folds);
     const double foot_m = ground.At(vertex, -deep_m / 2.0).z();

@@ -17,8 +17,8 @@ struct Stretch {
   double length_m = 0.0;
   double top_m = 0.0;       // of the edge above the water
   double run_m = 0.0;       // from the waterline to there
-  double hill_slope = 0.0;  // of the ground behind it
-  double reach_m = 0.0;     // of things in the water before it, or hanging over it
+  double hill_slope = 0.0;  // of the ground behind the waterline
+  double reach_m = 0.0;     // of things in the water before the waterline, or hanging over it
 };
 
 /// Heights of the ground at five distances inland from each vertex, straight in between: under water, on the edge, on top of it, and two behind it.

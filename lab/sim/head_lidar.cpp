@@ -92,7 +92,7 @@ void HeadLidar::FireColumn(double time_s, double column_azimuth_rad, double rate
     const double azimuth_rad = column_azimuth_rad + DegToRad(beam.azimuth_offset_deg) + rate_radps * beam.time_offset_us * 1e-6;
     const double elevation_rad = DegToRad(beam.elevation_deg);
     const Eigen::Vector3d direction = BeamDirection(azimuth_rad, elevation_rad);
-    // Off the axis, ahead of the column; the range counts as if the beam came from the axis.
+    // The beam starts off the axis, ahead of the column; the range counts as if it started on the axis.
     const Eigen::Vector3d origin_m = head_.beam_radius_m * (BeamDirection(column_azimuth_rad, 0.0) - direction);
     const Shot shot = shots_.Fire(origin_m, direction);
     const auto add = [&](const Measurement& measurement, int return_index) {

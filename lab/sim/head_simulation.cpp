@@ -50,7 +50,7 @@ std::optional<HeadSimulation::Event> HeadSimulation::Next() {
     }
   }
   const Utime arrival = scan_->scan.head.end_time + kScanLatency;
-  // Whatever is measured later also arrives later.
+  // Measurements that are made later also arrive later.
   while (navigation_.next_time() <= arrival) {
     for (auto& datagram : navigation_.Next()) {
       const auto place = std::ranges::upper_bound(datagrams_, datagram.time, {}, &Datagram::time);

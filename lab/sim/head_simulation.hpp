@@ -17,7 +17,7 @@ namespace lookout::sim {
 
 class HeadSimulation {
  public:
-  /// What a computer on board hears, and when.
+  /// An input of a computer on board, and its time.
   struct Event {
     Utime time;
     std::variant<Datagram, HeadScan> heard;

@@ -74,7 +74,7 @@ std::vector<HeadBeam> BeamsOfQt64() {
   return LowestFirst(std::move(beams));
 }
 
-// Range noise and reach over those of a VLP-16 (sd 2.5 cm; 100 m): data sheets. Range units: as the drivers write them into LIDAR_SCAN.
+// Range noise and reach as multiples of a VLP-16's (sd 2.5 cm; 100 m): data sheets. Range units: as the drivers write them into LIDAR_SCAN.
 std::vector<Head> MakeHeads() {
   std::vector<Head> heads;
   heads.push_back(

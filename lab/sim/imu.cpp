@@ -15,7 +15,7 @@ constexpr double kTemperatureCelsius = 25.0;
 // International standard atmosphere, ISO 2533, below 11 km.
 double PressureKpa(double height_m) { return 101.325 * std::pow(1.0 - 2.25577e-5 * height_m, 5.25588); }
 
-// Vessel frame (x forward, y port, z up) to that of the device.
+// From the vessel frame (x forward, y port, z up) to the frame of the device.
 Eigen::Vector3d ToDevice(const Eigen::Vector3d& v_vessel) { return {v_vessel.x(), -v_vessel.y(), -v_vessel.z()}; }
 
 // Axis times angle of a rotation that is small against pi.

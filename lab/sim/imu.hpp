@@ -14,9 +14,9 @@ namespace lookout::sim {
 /// m/s2 of a thousandth of standard gravity.
 inline constexpr double kMilliG = 9.80665e-3;
 
-/// Noise of each axis. Analog Devices ADIS16470, data sheet, page 1 and table 1: gyroscope 0.008 deg/s/sqrt(Hz) and 8 deg/h in-run bias
-/// stability, accelerometer 0.037 m/s/sqrt(h) velocity random walk and 13 ug. What the bias is after a start differs from run to run: 120 deg/h and
-/// 1.5 mg, those of Honeywell's HG1125 (bias repeatability), an IMU of the same class.
+/// Noise of each axis. Analog Devices ADIS16470, data sheet, page 1 and table 1: gyroscope 0.008 deg/s/sqrt(Hz) and 8 deg/h in-run bias stability,
+/// accelerometer 0.037 m/s/sqrt(h) velocity random walk and 13 ug. The bias after a start differs from run to run: 120 deg/h and 1.5 mg, the bias
+/// repeatability of Honeywell's HG1125, an IMU of the same class.
 struct ImuErrors {
   double gyro_density_radps_rthz = DegToRad(0.008);
   double gyro_start_bias_radps = DegToRad(120.0 / 3600.0);
@@ -39,13 +39,13 @@ class Imu {
   /// The mean over the kPeriod before `time`, as a device gives it that samples faster and averages: rates that are integrated give the attitude
   /// exactly, whatever happens between two samples.
   ///
-  /// The rate is against the stars: that of the earth (15 deg/h) is in it. Specific force: acceleration minus gravity (WGS84, at the datum); the
-  /// Coriolis acceleration (below 0.001 m/s2 at 5 m/s) is not in it. Field and pressure are those of the datum, without error.
+  /// The rate is against the stars: it contains the earth's rate (15 deg/h). Specific force: acceleration minus gravity (WGS84, at the datum); the
+  /// Coriolis acceleration (below 0.001 m/s2 at 5 m/s) is not in it. Magnetic field and pressure are the values at the datum, without error.
   ///
   /// @param time  kPeriod after the last one
   ImuMeasurement Measure(Utime time);
 
-  /// The same without errors.
+  /// Measure without errors.
   ImuMeasurement Truth(Utime time) const;
 
  private:

@@ -27,14 +27,14 @@ struct LidarParams {
   bool use_vertical_origin_offsets = false;  // as in lidar.txtpb
 };
 
-/// What made a return that is not zero.
+/// The origin of a return that is not zero.
 struct TrueReturn {
-  Utime time;            // its laser's firing as the packet says it, nearest microsecond
+  Utime time;            // firing of its laser by the packet's stamp, to the nearest microsecond
   int ring = 0;          // from the lowest beam up
   int return_index = 0;  // place in its pair of blocks: dual 0 last, 1 strongest; else 0
   int object_id = kNoObject;
   ReturnReason reason = ReturnReason::kObject;
-  int slot = 0;  // in its packet: block x 32 + sequence in the block x 16 + laser id
+  int slot = 0;  // place in its packet: block x 32 + sequence in the block x 16 + laser id
   /// Lidar frame, where the beam met what gave the return, without noise. At a mixed edge between the surfaces, along the axis of the beam.
   Eigen::Vector3d p_lidar_m = Eigen::Vector3d::Zero();
 };

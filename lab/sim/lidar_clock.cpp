@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 microseconds ToMicroseconds(double seconds) { return microseconds(std::llround(seconds * 1e6)); }
 
-// What a clock that runs alone gains in `duration`.
+// Time that a free-running clock gains in `duration`.
 microseconds Gain(microseconds duration, double drift_ppm) {
   return microseconds(std::llround(static_cast<double>(duration.count()) * drift_ppm * 1e-6));
 }

@@ -1,4 +1,4 @@
-// An lcm-log of what a boat records whose lidar has no packets here: NAV_RAW and LIDAR_SCAN. A replay begins at LIDAR_SCAN.
+// An lcm-log of a boat whose lidar has no simulated packets: NAV_RAW and LIDAR_SCAN. A replay begins at LIDAR_SCAN.
 #pragma once
 
 #include <filesystem>

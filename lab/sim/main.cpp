@@ -53,7 +53,7 @@ void Pace(sim::FaultyNetwork& network, sim::UdpSink& sink, Utime start, double s
   sigaddset(&stop_signals, SIGINT);
   sigaddset(&stop_signals, SIGTERM);
   struct sigaction hangup {};
-  if (sigaction(SIGHUP, nullptr, &hangup) != 0 || hangup.sa_handler != SIG_IGN) sigaddset(&stop_signals, SIGHUP);  // nohup: it goes on
+  if (sigaction(SIGHUP, nullptr, &hangup) != 0 || hangup.sa_handler != SIG_IGN) sigaddset(&stop_signals, SIGHUP);  // under nohup the program goes on
   pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
   sim::Schedule schedule(start, std::chrono::steady_clock::now() + (start - runtime::HostNow()), speed);
   while (const auto datagram = network.Next()) {

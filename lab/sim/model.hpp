@@ -34,10 +34,10 @@ class Model {
   bool Chance(double probability) { return random_.Uniform() < probability; }
   /// From `low` to `high`, both included.
   int Whole(int low, int high);
-  /// What the file gives, else a drawn number. Draws in both cases.
+  /// The file's number, else a drawn number. Draws in both cases.
   double GivenOrDrawn(double given, double low, double high);
 
-  /// Of a hull or body: bright gelcoat and paint, dull colours, dark paint, near black; or what the file gives.
+  /// Material of a hull or body: bright gelcoat and paint, dull colours, dark paint, near black; or the file's value.
   Material Paint(double given = 0.0);
   Material Cloth();
   Material Metal();
@@ -79,7 +79,8 @@ class Model {
 
   SceneObject& object_;
   Random& random_;
-  // Of its own: C++ leaves it open in which order the arguments of a call are drawn, and many a call has a size and a material.
+  // Materials have a random stream of their own: C++ leaves open in which order the arguments of a call are drawn, and many calls have a size and a
+  // material.
   Random materials_;
 };
 

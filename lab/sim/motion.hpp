@@ -34,13 +34,13 @@ struct Leg {
   double turn_rate_radps = 0.0;  // clockwise
 };
 
-/// Of another object, bow first at constant speed: a straight line, a circle, or a route of legs.
+/// The way of another object, bow first at constant speed: a straight line, a circle, or a route of legs.
 struct Track {
   Placement start;
   double speed_mps = 0.0;
   double turn_rate_radps = 0.0;  // clockwise
   std::vector<Leg> legs{};       // of a route, by time from 0 on; the turn rate above then has no meaning
-  double route_s = 0.0;          // time of the legs; then it begins anew when it is closed, else it stops there
+  double route_s = 0.0;          // time of the legs; then a closed route begins anew, and the object stops at the end of an open one
   bool is_closed = false;
 
   bool is_moving() const { return speed_mps != 0.0 || turn_rate_radps != 0.0; }
@@ -64,11 +64,11 @@ struct Wave {
   double phase_rad;
 };
 
-/// Of the own boat: round an ellipse or along a track, bow along the course but for the leeway, with the waves' motion on top.
+/// Motion of the own boat: round an ellipse or along a track, bow along the course but for the leeway, with the waves' motion on top.
 struct OwnMotion {
   Eigen::Vector2d center_map_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d semi_axes_m = Eigen::Vector2d::Zero();  // east, north; both 0 = along `track`
-  double period_s = 1.0;                                  // of one round, counter-clockwise
+  double period_s = 1.0;                                  // time of one round, counter-clockwise
   double start_rad = 0.0;                                 // where on the round: 0 = east, pi / 2 = north
   std::vector<Wave> leeway_rad{};                         // heading minus course
   std::vector<Wave> roll_rad{};

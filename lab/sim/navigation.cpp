@@ -17,7 +17,7 @@ constexpr std::uint64_t kGnssStream = 4;
 constexpr std::uint64_t kAttitudeStream = 7;
 constexpr std::uint64_t kLatencyStream = 8;
 
-// All measurements are made at multiples of the first, that of the IMU.
+// All measurements are made at multiples of the first period, the IMU's.
 constexpr microseconds kEpochPeriod = Imu::kPeriod;
 constexpr microseconds kAttitudePeriod = 20ms;
 constexpr microseconds kHeadingPeriod = 50ms;
@@ -188,7 +188,7 @@ void Navigation::AddImu(std::vector<Datagram>& datagrams) {
   if (plan_.At(TimedFaultKind::kImuStop, next_epoch_) == nullptr) datagrams.push_back(std::move(datagram));
 }
 
-// What stands in a position packet: the last RMC that has come, empty before the first.
+// The sentence in a position packet: the last RMC that has come, empty before the first.
 std::string Navigation::LidarSentence(Utime time) const {
   const auto second = clock_.SecondOfRmc(time);
   const auto found = second ? std::ranges::find(whole_seconds_, *second, &GnssMeasurement::time) : whole_seconds_.end();

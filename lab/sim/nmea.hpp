@@ -9,7 +9,7 @@
 
 namespace lookout::sim {
 
-/// What a GNSS receiver measured at its antenna.
+/// A measurement of a GNSS receiver at its antenna.
 struct GnssMeasurement {
   Utime time;
   double latitude_deg = 0.0;
@@ -19,10 +19,10 @@ struct GnssMeasurement {
   double speed_mps = 0.0;
   double course_deg = 0.0;  // from true north, clockwise
   int quality = 0;          // as in GGA; 0 = no fix: then only the time is said
-  double sd_m = 0.0;        // of a position per axis, as the receiver knows it
+  double sd_m = 0.0;        // of a position per axis, as the receiver states it
 };
 
-/// What an attitude sensor measured. Signs as in POSE.
+/// A measurement of an attitude sensor. Signs as in POSE.
 struct AttitudeMeasurement {
   Utime time;
   double heading_deg = 0.0;
@@ -32,7 +32,7 @@ struct AttitudeMeasurement {
   bool has_rtk = false;    // the receiver that the sensor leans on
 };
 
-/// What an IMU measured. Axes as VectorNav has them: x forward, y starboard, z down.
+/// A measurement of an IMU. Axes as VectorNav's: x forward, y starboard, z down.
 struct ImuMeasurement {
   Eigen::Vector3d magnetic_gauss;
   Eigen::Vector3d specific_force_mps2;  // at rest -9.8 along z

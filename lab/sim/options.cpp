@@ -28,7 +28,7 @@ CLI::Validator Within(double min, double max) {
   return {check, range.get_description(), ""};
 }
 
-// UTC as microseconds since 1970. What is no UTC stays, for the checks behind it.
+// UTC as microseconds since 1970. Text that is no UTC stays, for later checks.
 std::string ToMicroseconds(std::string& text) {
   const auto given = ParseGivenTime(text);
   if (given && given->kind == GivenTime::Kind::kUtc) text = std::to_string(given->value.count());

@@ -21,7 +21,7 @@ struct Options {
   std::filesystem::path log_file;      // LogSink
   std::filesystem::path truth_folder;  // empty: none
   bool force = false;                  // existing files are replaced
-  // Of a capture. 2026-06-15 14:10:00 UTC: any date serves, as long as it is always the same.
+  // Start of a capture, 2026-06-15 14:10:00 UTC: any date serves, as long as it is always the same.
   std::int64_t start_utime_us = 1'781'532'600'000'000;
   double speed = 1.0;           // to udp_host, times real time; 0 = without waiting
   SimulationParams simulation;  // seed, faults, and values of lidar and navigation that no config file has

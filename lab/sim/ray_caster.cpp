@@ -18,10 +18,10 @@ using Eigen::Vector3d;
 constexpr int kNumBins = 720;
 constexpr double kBinsPerRad = kNumBins / kTwoPi;
 
-// What rides the waves gets a new height and list so often: at 1 m/s of heave it moves by half a millimetre in between.
+// Period in which floating objects get a new height and list: at 1 m/s of heave they move by 0.5 mm in between.
 constexpr double kTiltPeriodS = 0.0005;
 
-// Of the tests that keep parts from being looked at closely: far more than rounding, far less than a part.
+// Slack of the tests that skip parts without a close look: far more than rounding, far less than a part.
 constexpr double kRoundingM = 1e-6;
 constexpr double kRoundingCosine = 1e-12;
 

@@ -14,7 +14,7 @@ struct Echo {
   Material material{0.0};
   ReturnReason reason = ReturnReason::kObject;
   double share = 1.0;              // of the beam's light
-  bool is_behind_foliage = false;  // the echo before it is of foliage
+  bool is_behind_foliage = false;  // the echo before comes from foliage
 };
 
 /// Nearest first.
@@ -48,7 +48,7 @@ class RayCaster {
   /// @return up to two surfaces, nearest first: the second only behind a porous first one. Farther than `max_range_m` counts as nothing.
   Echoes Cast(const Ray& ray, double max_range_m, bool wants_second);
 
-  /// Along a beam: the surfaces that its rays meet. Such as lie one behind the other within kMergeM come as one echo between them.
+  /// Casts a beam: the surfaces that its rays meet. Surfaces within kMergeM behind each other give one echo between them.
   Echoes CastBeam(const Ray& axis, double max_range_m, bool wants_second);
 
   static constexpr double kSortPeriodS = 0.01;
@@ -75,8 +75,8 @@ class RayCaster {
     double farthest_m = 0.0;
     double low_map_m = 0.0;
     double high_map_m = 0.0;
-    Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // unit vector to the middle of its sector
-    double cosine_half = -1.0;                         // of half its sector
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // unit vector to the middle of the object's sector
+    double cosine_half = -1.0;                         // cosine of half the object's sector
   };
   // From the first bin, counter-clockwise round to the last.
   struct Bins {

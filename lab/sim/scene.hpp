@@ -1,4 +1,4 @@
-// What floats and stands around the own boat.
+// Things that float and stand around the own boat.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace lookout::sim {
 
-/// Strengths of what the lidar meets besides clean surfaces. Models and their sources: README.md, "What is simulated".
+/// Strengths of effects that the lidar meets besides clean surfaces. Models and their sources: README.md, "What is simulated".
 using Effects = config::Scene::Effects;
 
 /// Why there is a return. The values are on the wire (sim_truth_t): one may be added at the end, none changes its meaning.
@@ -28,8 +28,8 @@ enum class ReturnReason {
   kWake = 5,       // foam behind a moving boat
   kSpray = 6,      // drops at the own bow
   kRain = 7,
-  kMixedEdge = 8,  // a beam on two surfaces; it belongs to the nearer object
-  kMirror = 9,     // an object seen by way of the water's surface, below which it seems to lie
+  kMixedEdge = 8,  // a beam on two surfaces; the return belongs to the nearer object
+  kMirror = 9,     // an object mirrored in the water's surface, below which it seems to lie
   kBird = 10,      // in flight
   kFog = 11,
 };
@@ -65,7 +65,7 @@ struct SceneObject {
   bool is_afloat() const { return !waterline_m.isZero(); }
 };
 
-/// Where the frame of an object is. What floats goes up and down with the water under it and leans as the water between its ends does.
+/// Pose of the frame of an object. A floating object goes up and down with the water under it and leans as the water between its ends does.
 Eigen::Isometry3d PoseAt(const SceneObject& object, const Sea& sea, double time_s);
 
 struct Scene {

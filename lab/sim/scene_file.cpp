@@ -55,7 +55,7 @@ bool IsLand(File::Kind kind) {
   return kind == File::SHORE || kind == File::ISLAND || kind == File::COAST || kind == File::QUAY || kind == File::BREAKWATER;
 }
 
-// Whose sizes are those of land, or drawn by its maker.
+// Whether the sizes of an object are free: sizes of land, or sizes drawn by its maker.
 bool HasFreeSizes(const File::Object& object) {
   return object.kind() == File::PILE_PIER || object.kind() == File::BRIDGE || (IsLand(object.kind()) && !object.land().has_mean_radius_m());
 }
@@ -66,7 +66,7 @@ bool IsDock(File::Kind kind) {
   return std::ranges::find(kDocks, kind) != kDocks.end();
 }
 
-// Of one message of the file.
+// Checks one message of the file.
 class Checker {
  public:
   // @param path  of the message in the file, with a dot behind it

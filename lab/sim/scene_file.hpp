@@ -28,12 +28,12 @@ struct SceneSummary {
   std::string description;  // one line: its purpose
 };
 
-/// What FindScene finds by name, sorted, but for families.
+/// Scenes that FindScene finds by name, sorted, without families.
 ///
 /// @throws config::ConfigError for a file that is wrong
 std::vector<SceneSummary> ListScenes(const std::filesystem::path& config_folder);
 
-/// The same of families: scenes whose things are drawn as a whole, in the folder `families` of those of the scenes.
+/// Families, sorted: scenes whose things are all drawn, in the folder `families` of the scenes' folders.
 std::vector<SceneSummary> ListFamilies(const std::filesystem::path& config_folder);
 
 /// @param seed  draws waves, shores, trees and whatever the file gives as a range
@@ -41,7 +41,7 @@ std::vector<SceneSummary> ListFamilies(const std::filesystem::path& config_folde
 ///         an object within 60 s
 Scene LoadScene(const std::filesystem::path& file, std::uint64_t seed);
 
-/// The same from text; `name` stands in for the path in faults.
+/// Scene from text; `name` stands in for the path in faults.
 Scene ParseScene(const std::string& text, const std::string& name, std::uint64_t seed);
 
 }  // namespace lookout::sim

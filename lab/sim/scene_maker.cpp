@@ -29,8 +29,8 @@ using File = config::Scene;
 constexpr std::uint64_t kSceneStream = 1;  // the own boat's waves and the land
 constexpr std::uint64_t kSeaStream = 101;
 constexpr std::uint64_t kOwnBoatStream = 102;
-constexpr std::uint64_t kRedrawStream = 200;        // and the next ones
-constexpr std::uint64_t kFirstObjectStream = 1000;  // and one for each object of the file
+constexpr std::uint64_t kRedrawStream = 200;        // first of the streams of redraws
+constexpr std::uint64_t kFirstObjectStream = 1000;  // first of the streams of objects, one for each object of the file
 
 constexpr double kOwnBoatClearanceM = 1.5;
 // M. Jeong, A. Quattrini Li, IROS 2021: Catabot, 2.4 m x 1.4 m.
@@ -46,7 +46,7 @@ constexpr std::size_t kMaxBytesOfObjects = 119'600;
 // As sim_object_t.lcm has it: numbers and flags, two texts with their lengths, and the outline.
 std::size_t BytesInTruth(const SceneObject& object) {
   constexpr std::size_t kBytesOfNumbers = 58;
-  constexpr std::size_t kBytesAroundText = 5;  // its length before it, a zero behind it
+  constexpr std::size_t kBytesAroundText = 5;  // length before the text, a zero behind it
   return kBytesOfNumbers + 2 * kBytesAroundText + object.name.size() + object.kind.size() + 16 * object.outline_m.size();
 }
 
@@ -104,7 +104,7 @@ bool IsBuiltOut(File::Kind kind) {
   return std::ranges::find(kKinds, kind) != kKinds.end();
 }
 
-// Of land with edges. A quay is a wall with fenders, a breakwater boulders, where nothing else is said.
+// Makes land with edges. Where the file says nothing else a quay is a wall with fenders, and a breakwater boulders.
 Coast MakeLand(const File::Object& file, const Line* along_m, Random& random) {
   const bool is_closed = file.kind() == File::ISLAND || file.kind() == File::BREAKWATER;
   const double length_m = Draw(file.length_m(), is_closed ? 30.0 : 200.0, random);
@@ -223,7 +223,7 @@ class Drawing {
   }
 
   SceneObject DrawBody(const File::Object& file, const std::string& field, Random& random) try {
-    num_front_ = 0;  // that of land which found no place
+    num_front_ = 0;  // the old number was of land which found no place
     reach_m_.clear();
     if (file.kind() == File::PILE_PIER || file.kind() == File::BRIDGE) {
       const bool is_pier = file.kind() == File::PILE_PIER;
@@ -296,7 +296,7 @@ class Drawing {
     return MakeRoute(points_m, speed_mps, path.turn_radius_m(), path.is_closed());
   }
 
-  // Moves an object along the row until the asked-for gap lies between it and the one before.
+  // Moves an object along the row until the asked-for gap lies between it and the object before.
   void PutInRow(const File::Object& file, const SceneObject& before, Random& random, SceneObject& object) {
     const Vector2d along = PlaceAtBearing(DegToRad(file.row().bearing_deg()), 1.0);
     const auto reach_m = [&along](const SceneObject& of, double sign) {
@@ -334,7 +334,7 @@ class Drawing {
     return edges_.Draw(file.beside(), object.outline_m, heading_rad, member, row, random);
   }
 
-  // What else may lie beside it, and on the other side of the water.
+  // Adds the edges of an object beside which others may lie, also across the water.
   void AddEdges(const std::string& name, const SceneObject& object) {
     const auto to_map = [&object](const std::vector<Vector2d>& line_m) {
       std::vector<Vector2d> map_m;
@@ -445,7 +445,8 @@ class Drawing {
 
 Scene DrawScene(const File& scene, std::uint64_t seed, SceneFaults& faults) {
   const std::uint64_t first_seed = SeedOf(scene, seed);
-  const File of_layout = WithDrawnLayout(scene, first_seed);  // once: those in which a place is hard to find come as often as they should
+  const File of_layout =
+      WithDrawnLayout(scene, first_seed);  // drawn once, so that layouts in which a place is hard to find come as often as they should
   for (std::uint64_t i = 0;; ++i) {
     Drawing drawing(of_layout, i == 0 ? first_seed : Random(first_seed, kRedrawStream + i).Next(), faults);
     if (auto drawn = drawing.Run()) return std::move(*drawn);

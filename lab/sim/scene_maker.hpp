@@ -12,14 +12,14 @@
 
 namespace lookout::sim {
 
-/// What is wrong with a scene file, each fault with its line.
+/// Faults of a scene file, each with its line.
 class SceneFaults {
  public:
   /// @param text  a scene that config::ParseText accepts
   /// @param name  stands for the file in faults
   SceneFaults(const std::string& text, std::string name);
 
-  /// @param field  its path in the schema, such as "object[2].path.speed_mps"; the line is that of the last part of it that the file has
+  /// @param field  its path in the schema, such as "object[2].path.speed_mps"; the line is that of the longest part of this path that the file has
   void Add(const std::string& field, const std::string& reason);
 
   /// @throws config::ConfigError when there are any

@@ -14,7 +14,7 @@ namespace lookout::sim {
 struct WaveTrain {
   double amplitude_m;
   double wavelength_m;
-  double to_rad;  // where it runs to, clockwise from north
+  double to_rad;  // direction to which the wave runs, clockwise from north
   double phase_rad;
 };
 

@@ -17,7 +17,7 @@ constexpr Material kFoliage{0.35, true};
 
 constexpr double kStepM = 2.0;         // between vertices of the waterline
 constexpr double kBankWidthM = 2.5;    // from the waterline to the top of the bank
-constexpr double kSlopeWidthM = 30.0;  // of the ground behind it
+constexpr double kSlopeWidthM = 30.0;  // of the ground behind the waterline
 constexpr double kSlopeRise = 0.22;
 constexpr double kMaxCrownRadiusM = 2.6;
 constexpr int kMinIslandSteps = 12;

@@ -18,10 +18,10 @@ constexpr double kHalfSeenReflectance = 0.4;
 constexpr double kRoughShare = 0.3;
 constexpr double kDropoutWidth = 0.06;  // of the step from seen to not seen, as a share of the range
 
-// What comes through foliage has been shaded twice by its half.
+// Light that comes through foliage is halved on the way there and on the way back.
 constexpr double kBehindFoliageShare = 0.25;
 
-// Strays: most of them near and all of them faint.
+// Stray returns: most are near and all are faint.
 constexpr double kStrayMinRangeM = 1.0;
 constexpr double kStrayMaxRangeM = 40.0;
 
@@ -51,7 +51,7 @@ Shots::Shots(const Scene& scene, const config::BoatFacts& boat, const RangeFacts
   own_caster_.MoveTo(0.0, T_vessel_lidar_.translation().head<2>());
 }
 
-// Draws the noise of range, then, where the range can be measured, that of reflectivity.
+// Draws the noise of range, then, where the range can be measured, the noise of reflectivity.
 Measurement Shots::ToMeasurement(double range_m, double brightness, int object_id, ReturnReason reason) {
   const double range = std::round((range_m + facts_.noise * effects_.range_sd_m() * random_.Normal()) / facts_.unit_m);
   if (range < 1.0 || range > std::numeric_limits<std::uint16_t>::max()) return {};
@@ -103,7 +103,7 @@ Echoes Shots::Trace(const RayPair& ray, double max_range_m) {
 void Shots::TraceWater(const Ray& ray, double max_range_m, Seen& seen) {
   if (const auto echo = clutter_.FromWater(ray, max_range_m)) seen.Add(Measure(*echo));
   if (effects_.mirror_strength() > 0.0 && sea_.is_calm() && ray.direction.z() < 0.0) {
-    // Mirrored at the water, the ray comes from the eye's image below it: its range is that of the whole way.
+    // Mirrored at the water, the ray comes from the eye's image below it: its range is the length of the whole way.
     const Ray image{{ray.origin_m.x(), ray.origin_m.y(), -ray.origin_m.z()}, {ray.direction.x(), ray.direction.y(), -ray.direction.z()}};
     auto echoes = caster_.Cast(image, facts_.max_m, false);
     if (echoes.count == 0 || echoes.echo[0].hit.range_m <= -ray.origin_m.z() / ray.direction.z()) return;
@@ -168,7 +168,7 @@ Shot Shots::Fire(const Eigen::Vector3d& origin_m, const Eigen::Vector3d& directi
   if (const auto drop = clutter_.FromDrops(ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) {
     // A drop is either large and near enough or not: no range at which it is seen half of the time.
     const Measurement measured = ToMeasurement(drop->hit.range_m, drop->material.reflectance, kNoObject, drop->reason);
-    if (measured.range == 0) random_.Normal();  // of its reflectivity: each drop draws both, so that the seed gives the same data at any range
+    if (measured.range == 0) random_.Normal();  // noise of reflectivity: each drop draws both noises, so that a seed gives equal data at any range
     seen.Add(measured);
   }
   if (const auto drop = clutter_.FromClouds(ray.map, ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) {

@@ -14,7 +14,7 @@
 
 namespace lookout::sim {
 
-/// How a sensor measures ranges. Noise and reach are those of the scene's effects, which are of a VLP-16, times these.
+/// How a sensor measures ranges. Noise and reach are factors to the scene's effects, which hold for a VLP-16.
 struct RangeFacts {
   double unit_m = 0.002;
   // VLP-16 data sheet 63-9229: range up to 100 m; nothing is given nearer than about 0.4 m.
@@ -30,7 +30,7 @@ struct Measurement {
   int object_id = kNoObject;
   ReturnReason reason = ReturnReason::kStray;
   double true_range_m = 0.0;
-  double power = 0.0;  // relative to that of a white surface at 1 m
+  double power = 0.0;  // relative to the power from a white surface at 1 m
 };
 
 struct Shot {

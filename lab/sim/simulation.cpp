@@ -15,7 +15,7 @@ namespace format = vlp16::format;
 
 constexpr std::uint64_t kNetworkStream = 5;
 constexpr std::uint64_t kSecondNetworkStream = 6;
-constexpr std::uint64_t kSecondSeed = 1'000'003;  // beside that of the first
+constexpr std::uint64_t kSecondSeed = 1'000'003;  // added to the first lidar's seed
 
 // From the last shot of a packet to its arrival: sending takes 100 us at 100 Mbit/s, and the kernel some more.
 constexpr std::chrono::microseconds kDataLatency = 120us;
@@ -86,7 +86,7 @@ void Simulation::Fill() {
     // Past the end one that is not sent is as good as one that is: it is not given to anybody.
     if (is_sent || has_ended) lidar_datagram_ = Datagram{arrival, params_.data_port, {packet.payload.begin(), packet.payload.end()}};
   }
-  // Whatever is measured later also arrives later.
+  // Measurements that are made later also arrive later.
   while (navigation_.next_time() <= lidar_datagram_->time) {
     for (auto& datagram : navigation_.Next()) {
       const auto place = std::ranges::upper_bound(navigation_datagrams_, datagram.time, {}, &Datagram::time);

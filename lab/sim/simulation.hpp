@@ -19,21 +19,21 @@ struct SimulationParams {
   LidarParams lidar;
   NavigationParams navigation;
   int data_port = vlp16::format::kDataPort;
-  int second_data_port = 0;  // of the boat's second lidar, which sends no position packets; 0 = it has none
+  int second_data_port = 0;  // of the boat's second lidar, which sends no position packets; 0 = no second lidar
   Utime start;
   std::chrono::microseconds duration{0};
   std::uint64_t seed = 1;
-  std::vector<TimedFault> faults;                          // those of sensors; those of the network are FaultyNetwork's
-  std::function<void(const LidarPacket&)> on_packet = {};  // of each packet that is sent, before its datagram is given
+  std::vector<TimedFault> faults;                          // faults of sensors; faults of the network are FaultyNetwork's
+  std::function<void(const LidarPacket&)> on_packet = {};  // called with each packet that is sent, before its datagram is returned
 };
 
-/// What of them the config folder of the boat says: ports, and how sensors are set. @throws config::ConfigError
+/// Adds the parameters in the boat's config folder: ports, and settings of sensors. @throws config::ConfigError
 SimulationParams ParamsOfConfig(const std::filesystem::path& config_folder, SimulationParams params = {});
 
 class Simulation {
  public:
   /// @param scene  outlives this
-  /// @param truth  may be nullptr; outlives this. What a lidar without power does not see is not written to it
+  /// @param truth  may be nullptr; outlives this. Returns that a lidar without power does not see are not written
   /// @throws std::invalid_argument  as FaultPlan
   Simulation(const Scene& scene, const config::BoatFacts& boat, const SimulationParams& params, TruthWriter* truth);
 

@@ -75,7 +75,7 @@ std::vector<std::uint8_t> Frame(const Datagram& datagram, bool is_lidar, std::ui
 
   const auto udp = bytes.subspan(kEthernetBytes + kIpBytes);
   const auto port = static_cast<std::size_t>(datagram.port);
-  WriteU16BigEndian(udp, 0, port);  // the sensor sends from the port that it sends to
+  WriteU16BigEndian(udp, 0, port);  // source port: the sensor sends from the same port
   WriteU16BigEndian(udp, 2, port);
   WriteU16BigEndian(udp, 4, udp.size());
   std::ranges::copy(datagram.payload, udp.begin() + kUdpBytes);

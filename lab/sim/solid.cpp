@@ -127,7 +127,7 @@ std::optional<Hit> IntersectSolid(const Cone& cone, const Ray& ray) {
     for (const double sign : {-1.0, 1.0}) {
       const double range_m = (-b + sign * std::sqrt(discriminant)) / a;
       const double height_m = ray.origin_m.z() + range_m * ray.direction.z();
-      if (height_m < cone.bottom_m || height_m > cone.top_m) continue;  // also the cone beyond its tip
+      if (height_m < cone.bottom_m || height_m > cone.top_m) continue;  // this also refuses hits on the cone beyond its tip
       const Vector2d outward = (from_center_m + range_m * direction).normalized();
       consider(range_m, {outward.x(), outward.y(), -slope});
     }

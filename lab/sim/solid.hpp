@@ -47,7 +47,7 @@ struct Triangle {
   Eigen::Vector3d c_m;
 };
 
-/// Upright and round; its radius goes straight from that of the bottom to that of the top. One of the two may be 0.
+/// Upright and round; the radius changes linearly from bottom_radius_m to the radius at the top. One of the two may be 0.
 struct Cone {
   Eigen::Vector2d center_m;
   double bottom_radius_m;
@@ -77,10 +77,10 @@ struct Plane {
   double offset_m;
 };
 
-/// What lies inside of all planes, without what lies inside of all planes of the hollow.
+/// The space inside of all planes, without the space inside of all planes of the hollow.
 struct Convex {
   std::vector<Plane> planes;
-  std::vector<Plane> hollow;  // none = solid. Where it goes beyond the planes it is open: one sees into it
+  std::vector<Plane> hollow;  // none = solid. Where the hollow goes beyond the planes the solid is open: rays go into it
   Bounds bounds;
 };
 
@@ -88,7 +88,7 @@ using Solid = std::variant<Cylinder, Ellipsoid, Prism, Triangle, Cone, Rod, Conv
 
 /// Walls that lean over a convex footprint, under a top that may slope.
 struct LeaningWalls {
-  std::vector<Eigen::Vector2d> footprint_m;  // counter-clockwise, where it is widest: at the bottom of a cabin, at the top of a hull
+  std::vector<Eigen::Vector2d> footprint_m;  // counter-clockwise, where the walls are widest: at the bottom of a cabin, at the top of a hull
   // By edge of the footprint from its first vertex on; one value = all. Not negative: how much a wall comes in per metre from the widest height.
   std::vector<double> lean;
   bool is_widest_on_top = false;

@@ -21,7 +21,7 @@ void MakeRowingShell(const Size& size, Model& model) {
   plan.middle_share = 0.5;
   const double rail_m = model.Between(0.12, 0.25);
   model.Add(Prism{OutlineOf(plan), -0.1, rail_m}, model.Paint(size.reflectance));
-  const bool is_sculled = model.Chance(0.5);  // two oars each, else one, in turn to port and starboard
+  const bool is_sculled = model.Chance(0.5);  // two oars for each rower, else one, in turn to port and starboard
   const double sweep = model.Between(-0.6, 0.6);
   const double blade_m = model.Chance(0.5) ? 0.05 : model.Between(0.1, 0.5);
   const double reach_m = is_sculled ? 2.0 : 2.6;

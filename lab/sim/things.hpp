@@ -1,6 +1,6 @@
-// Models that a seed draws: boats, docks, buoys and other things on the water. Each has many parts; sizes are ranges of common craft, rounded.
-// In all of them a size that is not given (0) is drawn; floating ones state their waterline. Docks make their outline; that of
-// all others goes round their parts.
+// Models that a seed draws: boats, docks, buoys and other things on the water. Each has many parts; sizes are ranges of common craft, rounded. In all
+// models a size that is not given (0) is drawn; floating things state their waterline. Docks make their outline; the outline of all others goes round
+// their parts.
 #pragma once
 
 #include "lab/sim/fleet.hpp"
@@ -19,7 +19,7 @@ void MakeSailingDinghy(const Size& size, Model& model);
 void MakeYacht(const Size& size, Model& model);
 void MakeTwinHull(const Size& size, Model& model);
 
-// Low craft on which people are most of what is seen, and people without one: paddled.cpp.
+// Low craft on which mostly the people are seen, and people without a craft: paddled.cpp.
 void MakeCanoe(const Size& size, Model& model);
 void MakePaddleBoard(const Size& size, Model& model);
 void MakePedalBoat(const Size& size, Model& model);

@@ -16,7 +16,7 @@ constexpr double kStepS = 0.2;
 // M. Jeong, A. Quattrini Li, IROS 2021: Catabot, 2.4 m x 1.4 m.
 constexpr double kOwnHalfLengthM = 1.2;
 constexpr double kOwnHalfWidthM = 0.7;
-constexpr double kHeadroomM = 2.5;  // a man who stands on its deck, and a little more
+constexpr double kHeadroomM = 2.5;  // a man who stands on the deck, and a little more
 
 double RadiusOf(const Outline& outline_m) {
   double radius_m = 0.0;

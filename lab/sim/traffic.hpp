@@ -17,8 +17,8 @@ using Outline = std::vector<Eigen::Vector2d>;
 /// Between two objects in the first part of a scene, sampled every 0.2 s.
 struct Approach {
   double distance_m;
-  std::string name;      // of the other one
-  double limit_m = 0.0;  // nearer than which it may not come; 0 = in one place
+  std::string name;      // of the other object
+  double limit_m = 0.0;  // least distance to keep; 0 = both are in one place
 };
 
 class Traffic {
@@ -31,10 +31,10 @@ class Traffic {
 
   /// From now on it is in the way of others.
   ///
-  /// @param is_passed_under  the own boat keeps clear of those of its parts alone that reach lower than 2.5 m above the water
+  /// @param is_passed_under  the own boat keeps clear only of parts that reach lower than 2.5 m above the water
   void Add(const SceneObject& object, bool is_passed_under = false);
 
-  /// @return how near it comes to the own boat when that is less than `limit_m`
+  /// @return how near the object comes to the own boat, when nearer than `limit_m`
   std::optional<Approach> ToOwnBoat(const SceneObject& object, double limit_m) const;
 
   /// @param num_first  only the first so many that were added
@@ -62,8 +62,8 @@ class Traffic {
   };
   struct Mover {
     std::string name;
-    std::vector<Shape> shapes;  // by sample; one of a standing thing
-    double speed_mps;           // from one sample to the next no point of it is faster
+    std::vector<Shape> shapes;  // by sample; a single one for a standing thing
+    double speed_mps;           // from one sample to the next no point of the object is faster
     bool is_in_water = true;
   };
   Mover ToMover(const SceneObject& object) const;

@@ -75,7 +75,7 @@ TruthWriter::Folder::Folder(const std::filesystem::path& path) {
 
 TruthWriter::Folder::~Folder() {
   std::error_code ignored;
-  if (!made.empty()) std::filesystem::remove(made, ignored);  // a folder with files in it stays
+  if (!made.empty()) std::filesystem::remove(made, ignored);  // a folder that holds files stays
 }
 
 TruthWriter::TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start,

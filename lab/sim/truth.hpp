@@ -37,10 +37,10 @@ class TruthWriter {
   void AddReturns(std::span<const TrueReturn> returns);
   static constexpr std::size_t kPacketsPerMessage = 24;  // as in LIDAR_PACKETS: 28 kB
 
-  /// What happened to a packet.
+  /// Writes a fault that happened to a packet.
   void AddFault(const Fault& fault);
 
-  /// What was ordered for a part of the run.
+  /// Writes a fault that was ordered for a part of the run.
   void AddFault(const TimedFault& fault);
 
   /// Writes poses and outlines up to `time`.
@@ -56,7 +56,7 @@ class TruthWriter {
     ~Folder();
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
-    std::filesystem::path made;  // empty: it was there before
+    std::filesystem::path made;  // empty: the folder was there before
   };
   struct LatitudeLongitude {
     double latitude_deg = 0.0;
@@ -73,7 +73,7 @@ class TruthWriter {
   Folder folder_;
   const Scene& scene_;
   double reference_point_above_water_m_;
-  SceneObject own_vessel_;  // its outline: vessel frame
+  SceneObject own_vessel_;  // with its outline in the vessel frame
   GeodeticPlace datum_;
   GeographicLib::LocalCartesian map_;
   Utime start_;

@@ -31,7 +31,7 @@ Fault FaultOf(const tracks_t& message);
 /// @return kTracksId where ids of two parts do not increase
 std::variant<TracksOfScan, Fault> ToScan(std::span<const tracks_t> parts);
 
-/// @param message  of a sentence or a start mark, with a time that exists
+/// @param message  holds a sentence or a start mark, and a time that exists
 Item ToItem(const nav_raw_t& message, Utime time);
 
 ais_t ToMessage(const TracksOfScan& scan, const Picture& picture, std::int64_t seq);

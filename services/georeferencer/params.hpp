@@ -12,7 +12,8 @@ namespace lookout::georeferencer {
 struct Params {
   PlacementParams placement;
   std::chrono::microseconds pose_timeout{0};
-  std::optional<GeodeticPlace> datum = std::nullopt;                 // of boat.txtpb; nullopt: that of POSE is the first fix, whatever it is
+  std::optional<GeodeticPlace> datum =
+      std::nullopt;  // of boat.txtpb, to check the first POSE by; nullopt: nothing to check, the first fix is the datum of POSE
   std::optional<Eigen::Isometry3d> T_vessel_lidar_2 = std::nullopt;  // nullopt: the boat has one lidar
 };
 

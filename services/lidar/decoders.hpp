@@ -1,4 +1,4 @@
-// What depends on the model: the decoder of its packets, the judge of its senders, what its packets look like from outside.
+// The parts that depend on the model of lidar: decoder of its packets, judge of its senders, form of its packets for the bundler.
 #pragma once
 
 #include <memory>

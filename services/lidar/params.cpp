@@ -29,13 +29,13 @@ static_assert(Schema::MODEL_AUTO == 1 && Schema::MODEL_VLP16 == 2 && Schema::MOD
 static_assert(Schema::TIME_AUTO == 1 && Schema::TIME_SENSOR == 2 && Schema::TIME_HOST == 3);
 static_assert(Schema::UDP == 1 && Schema::CAPTURE == 2 && Schema::LOG == 3 && Schema::INTERFACE == 4);
 
-// What no field is wrong by itself in.
+// Checks fields that are each right but do not go together.
 void CheckRelations(const std::filesystem::path& file, const config::Lidar& message, std::vector<std::string>& faults) {
   const auto require = [&](bool is_fine, const char* field, const std::string& reason, int index = 0) {
     if (!is_fine) faults.push_back(config::FaultLine(file, field, reason, static_cast<std::size_t>(index)));
   };
   const bool are_ports_apart = message.data_port() != message.position_port();
-  // The fault names the one that stands in the file.
+  // The fault names the port that stands in the file.
   if (message.has_position_port() || !message.has_data_port()) {
     require(are_ports_apart, "position_port", "must differ from data_port, which is " + std::to_string(message.data_port()));
   } else {

@@ -34,7 +34,7 @@ struct Sources {
 struct OtherLidar {
   OtherModel model = OtherModel::kOuster;
   std::string beam_text = {};       // content of beam_file; empty = none
-  std::string beam_origin = {};     // where it is from, for people
+  std::string beam_origin = {};     // where beam_text comes from, for people
   std::string sensor_address = {};  // numeric; empty: the sensor is not asked
   int sensor_port = 0;
 };
@@ -47,10 +47,10 @@ struct Params {
   Input input = Input::kOutside;
   int data_port = vlp16::format::kDataPort;
   int position_port = vlp16::format::kPositionPort;
-  vlp16::DecoderParams decoder;     // of other models its time and cut alone
+  vlp16::DecoderParams decoder;     // of other models only its `time` and its cut azimuth count
   std::optional<OtherLidar> other;  // nullopt: of the VLP-16 family
   Sources sources;
-  std::optional<Eigen::Matrix3d> R_vessel_lidar;  // its mounting, where boat.txtpb has it: for the IMU in the lidar
+  std::optional<Eigen::Matrix3d> R_vessel_lidar;  // mounting of the lidar, where boat.txtpb has it: for the IMU in the lidar
 };
 
 /// The word of the schema for `model` in lidar.txtpb. @param other  nullopt: of the VLP-16 family
@@ -68,7 +68,7 @@ std::string ConfigFileName(int number);
 /// Whether the boat has a second lidar: its file is there.
 bool HasSecond(const std::filesystem::path& config_folder);
 
-/// The same, but fields that do not go together are added to `faults`, each as a line: for a caller that has more to check and tells all at once.
+/// LoadParams that adds fields that do not go together to `faults`, a line each: for a caller that has more to check and reports all faults at once.
 ///
 /// @throws config::ConfigError when the file is not of the schema
 Params LoadParams(const std::filesystem::path& config_folder, int number, std::vector<std::string>& faults);

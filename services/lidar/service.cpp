@@ -181,7 +181,7 @@ void Service::OnMessage(const lidar_packets_t& message) {
   Consume(*bundle);
 }
 
-// The same text comes again and again.
+// LIDAR_BEAMS repeat the same text again and again: only a new text changes anything.
 void Service::OnBeams(const lidar_beams_t& message) {
   if (message.packets != PacketsOf(params_).name) return;
   auto& other = *params_.other;

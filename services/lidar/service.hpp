@@ -25,8 +25,8 @@ class Service {
  public:
   Service(bus::Bus& bus, const Params& params);
 
-  /// A datagram from outside. Those of the right port and size from the lidar that holds the lock (SenderLock) are collected; when a bundle is full
-  /// or a scan ends, it is published as LIDAR_PACKETS and then exactly that bundle is decoded. Input::kOutside only.
+  /// A datagram from outside. Datagrams of the right port and size from the lidar that holds the lock (SenderLock) are collected; when a bundle is
+  /// full or a scan ends, it is published as LIDAR_PACKETS and then exactly that bundle is decoded. Input::kOutside only.
   void OnDatagram(Utime host_time, int udp_port, Bytes payload, const Sender& sender = {});
 
   /// Host time has come so far: a bundle does not wait for more than 100 ms, and silence of the lidar shows in Report().
@@ -49,7 +49,7 @@ class Service {
   HealthReport Report() const;
 
   /// Called with a line for the journal each time that the state of the sensor's clock, or the clock that stamps the scans, changes, and when another
-  /// lidar is taken or packets of others are refused: of these a line a second at most.
+  /// lidar is accepted or packets of other senders are refused: about refusals at most one line a second.
   void OnNotice(std::function<void(const std::string&)> handler) { on_notice_ = std::move(handler); }
 
  private:
@@ -87,7 +87,7 @@ class Service {
   std::int64_t sentence_seq_ = 0;
   std::int64_t num_refused_messages_ = 0;
   std::int64_t num_beams_refused_ = 0;
-  std::int64_t num_beams_of_log_ = 0;      // tables of a log that are not that of the config
+  std::int64_t num_beams_of_log_ = 0;      // beam tables of a log that differ from the config's
   std::int64_t num_waited_for_beams_ = 0;  // packets that came before the beams were known
   std::int64_t beams_seq_ = 0;
   std::optional<Utime> beams_sent_;      // packets of that time followed
@@ -109,7 +109,7 @@ class Service {
     Stream stream = Stream::kData;
     bool is_valid = false;
     Utime time{};
-    Utime began{};  // of refusals of its address, without a pause
+    Utime began{};  // begin of the uninterrupted refusals of this address
   };
   std::optional<Refusal> refusal_;
   std::array<std::int64_t, 2> num_sender_refused_{};  // by stream

@@ -1,4 +1,4 @@
-// What lidar.txtpb says about sources, checked as far as it can be before any is opened; and opens them. For main and lookout-doctor.
+// Checks the sources in lidar.txtpb as far as possible before any is opened, and opens them. For main and lookout-doctor.
 #pragma once
 
 #include <filesystem>
@@ -17,13 +17,13 @@ namespace lookout::lidar {
 ///
 /// @param config_folder  the boat's folder, holding lidar.txtpb
 /// @param number         2: of the second lidar, whose mounting boat.txtpb must have
-/// @throws config::ConfigError with all faults, but those of the schema before others
+/// @throws config::ConfigError with all faults; where fields break the schema, with these faults alone
 Params LoadChecked(const std::filesystem::path& config_folder, int number = 1);
 
-/// Of source UDP. Precondition: LoadChecked.
+/// Options of source UDP. Precondition: LoadChecked.
 io::UdpOptions ToUdpOptions(const Sources& sources, int port, const std::string& name = {});
 
-/// Of source INTERFACE. Precondition: LoadChecked.
+/// Options of source INTERFACE. Precondition: LoadChecked.
 LiveOptions ToLiveOptions(const Params& params);
 
 /// Opens the sources for `service`, which must live longer, and logs what is worth knowing of them. Precondition: LoadChecked.

@@ -160,7 +160,7 @@ std::string ConfigLines(const Speaker& speaker) {
   std::string lines = "model: " + ModelWord(speaker.other) + "\n";
   lines += "data_port: " + std::to_string(speaker.data_port) + "\n";
   const int usual_second = speaker.other ? RowOf(*speaker.other).usual_position_port : vlp16::format::kPositionPort;
-  // Both kinds to one port: position_port must be another.
+  // Where the sensor sends both kinds of packets to one port, position_port must still differ from data_port.
   const int second = speaker.second_port && *speaker.second_port != speaker.data_port ? *speaker.second_port : usual_second;
   lines += "position_port: " + std::to_string(second) + "\n";
   if (speaker.other && RowOf(*speaker.other).needs_beam_file) lines += "beam_file: \"metadata.json\"\n";

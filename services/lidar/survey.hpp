@@ -25,12 +25,12 @@ struct Speaker {
   std::optional<int> second_port;   // to which the same address sends position, IMU or GPS packets
   std::string name;                 // "Hesai XT32", "Velodyne VLP-16", "Ouster", "RoboSense"; for people
   bool is_of_vlp16_family = false;  // read by MODEL_AUTO
-  std::optional<OtherModel> other;  // read by its model. Neither: packets of this sensor are not read
+  std::optional<OtherModel> other;  // read when `model` names it. Neither of the two: packets of this sensor are not read
   std::int64_t num_packets = 0;     // data
   std::size_t size_bytes = 0;       // of the last data packet
   Utime first{};
   Utime last{};
-  std::vector<OusterLayout> layouts;  // Ouster: what such packets may be; their size does not tell
+  std::vector<OusterLayout> layouts;  // Ouster: layouts that packets of this size may have
   /// Host time minus the stamp of the packet, the least; nullopt where the stamp is not a whole time.
   std::optional<std::chrono::microseconds> host_minus_stamp;
   std::optional<Utime> stamp;  // of the last data packet
@@ -62,7 +62,7 @@ class Survey {
   std::map<std::string, int> second_port_;  // by address
 };
 
-/// What a difference to the host's clock means, for people: "37 s ahead, as TAI is of UTC". Empty within 0.25 s.
+/// The meaning of a difference between the sensor's and the host's clock, for people: "37 s ahead, as TAI is of UTC". Empty within 0.25 s.
 ///
 /// @param host_minus_stamp  as Speaker
 /// @param stamp             since 1970 where the clock is set

@@ -80,7 +80,7 @@ class InputsReader {
     Require(is_fine, "input", "'" + message_.input(index_).name() + "': " + reason, index_);
   }
 
-  // A text log has times of its own, and live inputs those of now: they make no one sequence.
+  // A text log has times of its own, live inputs have the present time: the two cannot form one sequence.
   void CheckTextLogs(const Params& params) {
     const auto is_text_log = [](const Connection& connection) { return connection.kind == Connection::Kind::kTextLog; };
     const auto first = std::ranges::find_if(params.connections, is_text_log);

@@ -24,11 +24,11 @@ struct Connection {
   std::filesystem::path file;                     // kSerial: the device; kTextLog: the log
   int baud = 0;                                   // kSerial
   double speed = 1.0;                             // kTextLog: times as fast; 0 = as fast as can be; of all text logs the same
-  std::optional<std::chrono::sys_days> day = {};  // kTextLog: of its first time, where no sentence has a date
+  std::optional<std::chrono::sys_days> day = {};  // kTextLog: of the log's first time, where no sentence has a date
 };
 
 struct Params {
-  bool reads_nav_raw = false;  // and nothing else, and publishes none; else it reads sources and LIDAR_NMEA
+  bool reads_nav_raw = false;  // reads NAV_RAW and nothing else, and publishes none; else reads sources and LIDAR_NMEA
   bool use_lidar_nmea = true;
   NavigatorParams navigator;
 

@@ -64,7 +64,7 @@ std::optional<GeodeticPlace> FirstPosition(const std::filesystem::path& file) tr
   }
   return std::nullopt;
 } catch (const std::runtime_error&) {
-  return std::nullopt;  // it cannot be read, as will be said when it is opened
+  return std::nullopt;  // the file cannot be read, which opening it will report
 }
 
 // Before the first fix nothing can be said of a datum, but against the positions of text logs.
@@ -134,7 +134,7 @@ std::string SourceInWords(const Params& params, const SourceParams& source) {
 
 std::string InWords(const Params& params) {
   if (params.reads_nav_raw) return "# reads NAV_RAW from the bus; nothing is opened\n";
-  // Those that config does not name have the defaults.
+  // Sources that config does not name have the defaults.
   auto sources = params.navigator.sources;
   const auto add = [&sources](const std::string& name) {
     if (std::ranges::find(sources, name, &SourceParams::name) == sources.end()) {

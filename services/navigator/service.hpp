@@ -34,7 +34,7 @@ class Service {
   /// @param sender  address and port: lines may be cut over datagrams of one sender. Empty: the lines of each datagram are complete
   void OnDatagram(Utime arrival, Bytes payload, const std::string& source = kUdpSource, const std::string& sender = {});
 
-  /// The same out of a stream, in pieces of any size.
+  /// Bytes of a stream, in pieces of any size.
   void OnStream(Utime arrival, Bytes bytes, const std::string& source);
 
   /// The stream broke off: its incomplete line is void.

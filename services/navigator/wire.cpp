@@ -82,7 +82,7 @@ std::optional<OdometryMotion> ToMotion(const lidar_odometry_t& message) {
     motion.covariance = RowMajor::Map(&message.covariance[0][0]);
     if (!motion.displacement_m.allFinite() || !std::isfinite(motion.turn_rad) || !motion.covariance.allFinite()) return std::nullopt;
   }
-  // What a reader of NAV_RAW would refuse does not enter it.
+  // A motion that a reader of NAV_RAW would refuse does not enter NAV_RAW.
   return ParseOdometry(ToSentence(motion));
 }
 

@@ -32,7 +32,7 @@ struct Config {
   page::Params params;
   std::string boat_text;
   std::optional<lookout::config::BoatFacts> boat;
-  std::string boat_fault;  // why the picture has no guard zone; empty: it has that of tracker.txtpb
+  std::string boat_fault;  // why the picture has no guard zone; empty: the picture has the guard zone of tracker.txtpb
 };
 
 // A faulty boat.txtpb is refused, as the other processes refuse it. With a faulty tracker.txtpb the page still starts: somebody
@@ -171,7 +171,7 @@ void Run(lookout::runtime::Process& process, const Config& config) {
       foxglove_feed->Take(time, channel, message);
     };
   }
-  page::ServerCounts foxglove_counts;  // the names in a report are of it
+  page::ServerCounts foxglove_counts;  // owns the names in a report
   service_parts.add_to_report = [&](lookout::HealthReport& report) {
     AddTo(report, faults, server, look_back.get());
     if (foxglove) AddTo(report, *foxglove, foxglove_counts);

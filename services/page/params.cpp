@@ -128,7 +128,7 @@ Params LoadParams(const fs::path& config_folder) {
     params.reserve_bytes = recorder.reserve_bytes();
     params.log_folder = recorder.log_folder();
     if (follows_recorder) params.recorder_folder = params.log_folder;
-  } catch (const config::ConfigError&) {  // the recorder tells of it
+  } catch (const config::ConfigError&) {  // the recorder reports this fault
   }
   return params;
 }

@@ -19,7 +19,7 @@ struct FoxgloveParams {
 };
 
 struct Params {
-  std::string boat;                        // its name, as in boat.txtpb
+  std::string boat;                        // the boat's name, as in boat.txtpb
   std::string bind_address = "127.0.0.1";  // numeric
   int port = 7668;
   std::vector<std::string> host_names = {};
@@ -30,17 +30,18 @@ struct Params {
   std::chrono::minutes look_back{10};       // 0: none
   std::filesystem::path spool_folder = {};  // empty: in the state folder
   std::int64_t spool_max_bytes = 2'000'000'000;
-  std::optional<std::filesystem::path> recorder_folder = {};  // whose growing log is read instead; absolute, or relative to the working folder
-  std::optional<std::filesystem::path> log_folder = {};       // of the recorder, followed or not: the same
-  std::int64_t reserve_bytes = 1'000'000'000;                 // of its disk, that the spool leaves free, too
-  std::optional<FoxgloveParams> foxglove = {};                // nullopt: not at all
+  std::optional<std::filesystem::path> recorder_folder =
+      {};  // the recorder's folder, whose growing log is read instead of a spool; absolute, or relative to the working folder
+  std::optional<std::filesystem::path> log_folder = {};  // the recorder's folder, whether its log is read or not
+  std::int64_t reserve_bytes = 1'000'000'000;            // of the recorder's disk, which the spool leaves free, too
+  std::optional<FoxgloveParams> foxglove = {};           // nullopt: no server for Foxglove's protocol
 };
 
 /// @param config_folder  the boat's folder, holding boat.txtpb, recorder.txtpb (for its log_folder and reserve_bytes) and page.txtpb
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
 
-/// Whether browsers of other computers reach it.
+/// Whether browsers of other computers reach the page.
 bool IsForOthers(const std::string& bind_address);
 
 /// Who can see the picture of a page there, as a part of a sentence: "this computer alone (127.0.0.1)".
@@ -49,10 +50,10 @@ std::string WhoSees(const std::string& bind_address);
 /// The words of --check besides the values: who sees the picture, and who can acknowledge.
 std::string InWords(const Params& params);
 
-/// Where a browser of this computer finds it: "http://localhost:7668/".
+/// Where a browser of this computer finds the page: "http://localhost:7668/".
 std::string AddressOnThisComputer(const std::string& bind_address, int port);
 
-/// Where others find it: an address for each of this computer's networks; with a loopback address none.
+/// Where other computers find the page: an address for each of this computer's networks; with a loopback address none.
 std::vector<std::string> AddressesForOthers(const std::string& bind_address, int port);
 
 }  // namespace lookout::page

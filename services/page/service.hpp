@@ -24,11 +24,11 @@
 
 namespace lookout::page {
 
-/// Commands of browsers to the look-out, on their way from the server's thread to that of the bus.
+/// Commands of browsers to the look-out, on their way from the server's thread to the thread of the bus.
 template <typename Command>
 class CommandQueue {
  public:
-  /// Any thread. One of more than kMost that wait is dropped and counted.
+  /// May be called from any thread. While kMost commands wait, a further command is dropped and counted.
   void Push(const Command& command) {
     const std::lock_guard lock(mutex_);
     if (waiting_.size() < kMost) {
@@ -61,10 +61,12 @@ struct ServiceParts {
   Server& server;
   AcknowledgementQueue& acknowledgements;
   OrderQueue& orders;
-  std::function<Utime()> now;                                                          // host time
-  std::function<void(Utime time, std::string_view channel, Bytes message)> keep = {};  // for the last minutes; none: they are not kept
-  std::function<void(Utime time, std::string_view channel, Bytes message)> draw = {};  // for viewers of Foxglove's protocol; none: there are none
-  std::function<void(HealthReport& report)> add_to_report = {};                        // further parts of the report
+  std::function<Utime()> now;  // host time
+  std::function<void(Utime time, std::string_view channel, Bytes message)> keep =
+      {};  // keeps messages for the last minutes; empty: they are not kept
+  std::function<void(Utime time, std::string_view channel, Bytes message)> draw =
+      {};                                                        // draws messages for viewers of Foxglove's protocol; empty: there are none
+  std::function<void(HealthReport& report)> add_to_report = {};  // further parts of the report
 };
 
 /// It subscribes all channels that a page shows: not the raw ones, LIDAR_NMEA and SIM_TRUTH. A message that does not decode, or is of a second
@@ -99,14 +101,14 @@ class Service {
   // The channels of a complete look-out.
   std::array<InputWatch, 6> watches_{InputWatch(bus::kLidarScan.name), InputWatch(bus::kSegments.name), InputWatch(bus::kPose.name),
                                      InputWatch(bus::kObstacles.name), InputWatch(bus::kTracks.name),   InputWatch(bus::kAlerts.name)};
-  std::set<AlertKey> alerts_;         // of the last ALERTS: those that an acknowledgement is wanted for
-  std::optional<Utime> alerts_time_;  // of their reception
+  std::set<AlertKey> alerts_;         // alerts of the last ALERTS that want an acknowledgement
+  std::optional<Utime> alerts_time_;  // host time when the last ALERTS came
   std::map<AlertKey, Utime> acknowledged_;
   std::int64_t ack_seq_ = 0;
   std::optional<std::pair<Order, Utime>> ordered_;  // last
   std::int64_t order_seq_ = 0;
   Counts<kCountNames> counts_;
-  ServerCounts server_counts_;  // the names in a report are of it
+  ServerCounts server_counts_;  // owns the names in a report
 };
 
 }  // namespace lookout::page

@@ -88,7 +88,7 @@ struct Tiles::Implementation {
     return {statement, sqlite3_finalize};
   }
 
-  // One that takes too long is ended, as a damaged one is.
+  // A statement that takes too long is ended, as with a damaged file.
   int Step(sqlite3_stmt* statement) {
     num_steps = 0;
     return sqlite3_step(statement);

@@ -14,12 +14,12 @@
 
 namespace lookout::plotter {
 
-/// Of a look, in centimetres rounded down: distances below MavSectors::min_distance_cm are that, as receivers take no nearer ones. A sector in which
-/// nothing is within the distance is clear (max_distance + 1) where somebody looked, else unknown.
+/// The distances of a look, in centimetres rounded down. Distances below MavSectors::min_distance_cm are raised to it, as receivers ignore nearer
+/// ones. A sector with nothing within `max_distance_m` is clear (max_distance + 1) where somebody looked, else unknown.
 MavSectors ToMavSectors(const Look& look, Utime time, double max_distance_m);
 
-/// Of a look in which somebody looked: the nearest place of each sector, nearest first; where none is within the distance, one beyond it, which
-/// empties a receiver's fence.
+/// The nearest place of each sector within `max_distance_m`, nearest first; where there is none, one place beyond that distance, which empties a
+/// receiver's fence. Precondition: somebody looked in some direction.
 std::vector<MavPoint> ToMavPoints(const Look& look, Utime time, double max_distance_m);
 
 class MavlinkOutput : public Output {
@@ -31,20 +31,20 @@ class MavlinkOutput : public Output {
         writer_(params.mavlink.system_id, params.mavlink.component_id),
         heartbeats_name_("output_" + params.name + "_heartbeats") {}
 
-  /// Those of the link; output_NAME_heartbeats: of an autopilot, that came back.
+  /// Counters of the link; output_NAME_heartbeats: heartbeats of an autopilot that came back.
   std::vector<Counter> counters() const override;
 
  private:
   void SendOwnShip(const Told& /*told*/) override {}
   void SendTargets(const Told& /*told*/) override {}
-  /// Nothing where nobody looked into any direction. Of points as many as leave a serial port within 0.1 s, what waits there included. Before the
-  /// first distances goes the text that the look-out begins or is back.
+  /// Sends nothing where nobody looked in any direction. Sends as many points as leave a serial port within 0.1 s, including the bytes that wait
+  /// there. Before the first distances goes the text that the look-out begins or is back.
   void SendLook(const Told& told) override;
-  /// And the heartbeat.
+  /// Sends due notices and the heartbeat.
   void SendNotices(const Told& told) override;
   void SendAnew() override;
   Commands Read(const std::string& message, const Told& told) override;
-  int most_read() const override { return 64; }  // all that waits: an autopilot sends its state by itself
+  int most_read() const override { return 64; }  // all waiting messages: an autopilot sends its state unasked
 
   void SendText(MavSeverity severity, std::string_view text);
   void TellWhetherSomebodyLooks(const Told& told);

@@ -62,9 +62,10 @@ Commands N2kDeviceOutput::Read(const std::string& message, const Told& told) {
   heard_ = told.passed;
   if (owes_begin_) return {};
   if (heard->is_echo) NoteOwnClaim(heard->frame);
-  // Of what programs sent through this gateway, claims concern us: another may be a device, too. Our own request would be answered by us.
+  // Among frames that programs sent through this gateway only claims are read: another program may be a device, too. Our own request must not be
+  // answered by us.
   if ((!heard->is_echo || ClaimedNameOf(heard->frame)) && !device_.Take(heard->frame, told.passed)) CountRefused();
-  SendOwed();  // at once: others wait for a claim no longer than we do
+  SendOwed();  // at once: other devices wait for a claim no longer than this one does
   return {};
 }
 

@@ -12,13 +12,14 @@ namespace lookout::plotter {
 
 class N2kDeviceOutput : public N2kOutput {
  public:
-  /// A gateway tells at least of what it has sent for us, so one that is silent for so long is none of RAW text, or takes nothing.
+  /// A gateway reports at least the frames that it has sent for us. A gateway that is silent for this long does not speak RAW text, or accepts
+  /// nothing.
   static constexpr std::chrono::seconds kMostSilence{10};
 
   N2kDeviceOutput(const OutputParams& params, std::unique_ptr<Link> link, std::chrono::microseconds target_period, N2kIdentity identity);
 
   std::string fault() const override;
-  /// Those of the link; output_NAME_address (-1: none is claimed), output_NAME_addresses_lost, output_NAME_unanswered.
+  /// Counters of the link; output_NAME_address (-1: none is claimed), output_NAME_addresses_lost, output_NAME_unanswered.
   std::vector<Counter> counters() const override;
 
  private:
@@ -27,7 +28,7 @@ class N2kDeviceOutput : public N2kOutput {
   Commands Read(const std::string& message, const Told& told) override;
   std::string Text(const N2kMessage& message, Utime time) override;
   bool IsReady() const override { return !owes_begin_ && device_.is_claimed(); }
-  int most_read() const override { return 64; }  // all that waits: a busy network sends more than a thousand frames a second
+  int most_read() const override { return 64; }  // all waiting messages: a busy network sends more than a thousand frames a second
 
   std::string TextFrom(const N2kMessage& message, std::uint8_t source);
   void SendOwed();

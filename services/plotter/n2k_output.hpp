@@ -15,11 +15,11 @@ class N2kOutput : public Output {
  protected:
   void SendNotices(const Told& /*told*/) override {}  // NMEA 2000's alerts want a device that answers their group functions
   void SendAnew() override { targets_.Forget(); }
-  /// As it goes out: whole lines.
+  /// The message as text to be sent: whole lines.
   virtual std::string Text(const N2kMessage& message, Utime time);
   /// Whether messages may be sent now.
   virtual bool IsReady() const { return true; }
-  /// 0 to 7: of the next fast packet.
+  /// Sequence number of the next fast packet, 0 to 7.
   int NextSequence();
 
  private:

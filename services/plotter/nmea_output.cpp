@@ -127,13 +127,13 @@ Commands NmeaOutput::Read(const std::string& message, const Told& told) {
   AlertCommand command;
   const auto kind = ReadLine(message, command);
   if (kind == LineKind::kWrong) CountRefused();
-  // In the words in which this output was told of alerts.
+  // A command counts only in the kind of sentence by which this output tells alerts.
   if (kind != LineKind::kCommand || params().alerts != (command.is_alarm_number ? SentAlerts::kAlr : SentAlerts::kAlf)) return {};
   return Obey(command, told);
 }
 
 Commands NmeaOutput::Obey(const AlertCommand& command, const Told& told) {
-  // Of two of one number the later.
+  // Where two notices have the number, the one raised later is meant.
   const auto notices = AsTold(told);
   const Notice* meant = nullptr;
   for (const auto& notice : notices) {

@@ -14,7 +14,7 @@ namespace lookout::plotter {
 
 class NmeaOutput : public Output {
  public:
-  /// Of HBT and ALC, which go with ALF. A warning that nobody has acknowledged for so long is raised again.
+  /// Period of HBT and ALC, which go with ALF.
   static constexpr std::chrono::seconds kListPeriod{30};
 
   NmeaOutput(const OutputParams& params, std::unique_ptr<Link> link, std::chrono::microseconds target_period,
@@ -25,7 +25,7 @@ class NmeaOutput : public Output {
   void SendTargets(const Told& told) override;
   void SendNotices(const Told& told) override;
   void SendAnew() override;
-  /// They would not be there when a process that is begun again gives their numbers to others.
+  /// Ends the targets: else a receiver would still show them when the next process gives their numbers to other targets.
   void FinishTargets(const Told& told) override;
   Commands Read(const std::string& message, const Told& told) override;
 

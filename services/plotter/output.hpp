@@ -28,12 +28,12 @@ struct Told {
   const TargetNumbers& numbers;
   std::span<const Notice> notices;
   Utime host_time;
-  bool somebody_looks = false;  // ALERTS, TRACKS and POSE are of now, and no alert says otherwise; known where an output of MAVLink is
+  bool somebody_looks = false;  // ALERTS, TRACKS and POSE are fresh, and no alert says otherwise; known where there is an output of MAVLink
   const Look* look = nullptr;   // of the last TRACKS, in TellLook alone
-  Utime look_time = {};         // the end of its scan
+  Utime look_time = {};         // end of the look's scan
 };
 
-/// What people asked for by messages that came back over an output.
+/// Commands of people in messages that came back over an output.
 struct Commands {
   std::vector<std::int64_t> acknowledged = {};  // notices by KeyOf
   bool silences = false;                        // no sound for a while; alerts stay as they are
@@ -51,7 +51,7 @@ class Output {
 
   /// Once each own_ship_period, while POSE comes: told.own may say that the position is not known.
   void TellOwnShip(const Told& told);
-  /// After each TRACKS, while targets may be told: due targets, and once those that are there no more.
+  /// After each TRACKS, while targets may be told: sends due targets, and once the end of each target that is there no more.
   void TellTargets(const Told& told);
   /// Targets may be told no more: their state is not known. Must be called until they may be told again.
   void StopTargets(const Told& told);
@@ -62,7 +62,7 @@ class Output {
   /// Ten times a second or more: due notices.
   void TellNotices(const Told& told);
 
-  /// Received since the last call; empty where they are not accepted.
+  /// Commands received since the last call; empty where this output accepts none.
   Commands TakeCommands(const Told& told);
 
   /// Why nothing can be sent now; empty = nothing is known to be wrong.
@@ -71,7 +71,7 @@ class Output {
 
   /// Lines that could not be read.
   std::int64_t num_refused() const { return num_refused_; }
-  /// Messages that must not be lost, and were, since the link took less than came.
+  /// Messages that must not be lost but were, as the link accepted too few.
   std::int64_t num_dropped() const { return num_dropped_; }
 
  protected:
@@ -81,12 +81,12 @@ class Output {
   virtual void FinishTargets(const Told& told) { EndTargets(told); }
   virtual void SendLook(const Told& /*told*/) {}
   virtual void SendNotices(const Told& told) = 0;
-  /// To a receiver that knows nothing yet.
+  /// There is a receiver that knows nothing yet: makes all due again.
   virtual void SendAnew() = 0;
   /// A received message, whether or not commands are accepted.
   virtual Commands Read(const std::string& /*message*/, const Told& /*told*/) { return {}; }
 
-  /// Messages that are read at once: a flood holds nobody up.
+  /// Most messages that are read at once: a flood holds nobody up.
   virtual int most_read() const { return 8; }
 
   /// @return false where the link has no room now, or a message that must not be lost waits: try again
@@ -95,7 +95,7 @@ class Output {
   ///
   /// @param subject  a waiting message of this subject is replaced; empty: of none
   void SendSurely(std::string message, const std::string& subject = {});
-  /// Those that wait, of subjects that begin so.
+  /// Drops waiting messages whose subject begins so.
   void DropWaiting(std::string_view subject_begin);
   static constexpr std::size_t kMostWaiting = 2000;
   std::size_t room_bytes() const { return link_->room_bytes(); }

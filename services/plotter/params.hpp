@@ -63,10 +63,10 @@ struct OutputParams {
 };
 
 struct Params {
-  std::string boat;          // its name, as in boat.txtpb
+  std::string boat;          // the boat's name, as in boat.txtpb
   std::string version = {};  // of this program
   bool takes_tentative = false;
-  bool sends_ais_targets = true;  // such as AIS tells of
+  bool sends_ais_targets = true;  // also tells targets that the receiver has by AIS
   std::chrono::microseconds target_period{2'500'000};
   std::chrono::microseconds own_ship_period{1'000'000};
   std::chrono::microseconds number_quarantine{60'000'000};

@@ -38,7 +38,7 @@ std::vector<ToldNotice> RevisionFile::Read() const {
     const bool is_good =
         raised && told.revision >= 1 && told.revision <= kMostRevision && told.notice.escalation >= 0 && told.notice.escalation <= kMostEscalation;
     if (!is_good) return {};
-    if (notices.size() == kMostNotices) return notices;  // those that stand come first
+    if (notices.size() == kMostNotices) return notices;  // standing notices come first in the file
     told.notice.cause = static_cast<Cause>(cause);
     told.notice.raised = *raised;
     told.notice.level = static_cast<Level>(level);

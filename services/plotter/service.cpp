@@ -114,7 +114,7 @@ void Service::UseTracks(std::span<const tracks_t> parts) {
     time = part.time;
     std::ranges::move(part.targets, std::back_inserter(tracks));
   }
-  // The same again says nothing of now.
+  // TRACKS that came before say nothing about the present.
   if (time == tracks_time_ && begin == begin_) return;
   tracks_seen_ = passed_.passed();
   if (begin_ && begin != begin_) {
@@ -154,7 +154,8 @@ void Service::ComposeTargets() {
     }
     if (target.tcpa_s > 0.0) target.tcpa_s = std::max(0.0, target.tcpa_s - ahead_s);
     if (const auto level = levels.find(track.id); level != levels.end() && track.id != 0) target.level = level->second;
-    // The receiver has her by AIS. What is dangerous must be there all the same, and what AIS may have dropped.
+    // The receiver has a ship on air by AIS, so the target is left out. Dangerous targets, and ships that AIS may have dropped, are told all the
+    // same.
     const bool is_on_air = ship != nullptr && ships_->on_air.contains(track.id);
     if (is_on_air && !params_.sends_ais_targets && !IsDangerous(target)) targets.pop_back();
   }
@@ -250,7 +251,7 @@ void Service::ComposeNotices() {
   for (auto& notice : notices_) {
     const std::pair key(KeyOf(notice), notice.changed);
     const auto known = unchanged_since_.find(key);
-    // One that was there before this process is as old as the clock says.
+    // A notice that was there before this process is as old as the host's clock says.
     const auto age = now_ ? std::chrono::duration_cast<std::chrono::microseconds>(*now_ - notice.changed) : 0us;
     const auto begin = known != unchanged_since_.end() ? known->second : passed_.passed() - std::max(age, 0us);
     if (now_) since.emplace(key, begin);

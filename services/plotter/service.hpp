@@ -77,17 +77,17 @@ class Service {
   bus::Bus& bus_;
   Params params_;
   std::vector<std::unique_ptr<Output>> outputs_;
-  std::set<std::string> remarks_;  // that hold
+  std::set<std::string> remarks_;  // remarks that hold
   messages::PartAssembler<tracks_t> parts_;
   TargetNumbers numbers_;
   OwnShip own_;
   bool has_pose_ = false;
   std::vector<Target> tracks_;      // of the last TRACKS, by id
-  std::vector<Target> targets_;     // of them: those that are told, as of now
+  std::vector<Target> targets_;     // tracks that are told, at the present time
   Utime tracks_time_;               // to which they are propagated
   std::optional<Utime> begin_;      // of the tracker's process
   std::vector<Notice> alerts_;      // of the last ALERTS
-  GivenNames names_;                // the same
+  GivenNames names_;                // of the last ALERTS
   std::optional<ShipNames> ships_;  // of the last AIS
   std::optional<Notice> own_notice_;
   std::vector<Notice> notices_;                                                          // alerts_ and own_notice_

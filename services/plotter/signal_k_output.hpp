@@ -38,15 +38,16 @@ class SignalKOutput : public Output {
   TargetSchedule targets_{kTargetPeriod};
   TargetPlaces places_;
   NoticeSchedule notices_;
-  // Notices that were told, as they were last.
+  // A notice in the state that was told last.
   struct Raised {
     std::string word;
     Notice notice;
-    bool is_heard_loud = false;  // it came back with sound since it was told so last: then a person silenced it
+    bool is_heard_loud =
+        false;  // the notification came back with sound since it was last told so; if it comes back without sound now, a person silenced it
   };
   static constexpr std::size_t kMostRaised = 1000;
   std::map<RaisedKey, Raised> raised_;
-  std::set<std::string> ended_words_;  // of processes before this one
+  std::set<std::string> ended_words_;  // words of notices of earlier processes that were ended
   bool was_placed_ = false;
 };
 

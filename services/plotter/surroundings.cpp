@@ -134,7 +134,7 @@ Surroundings::Found Surroundings::SecondOf(const tracks_t& tracks) const {
   return {};
 }
 
-// What a single scan is sure of, land, and what a track that is there explains. All else may be spray.
+// Segments that count: sure segments of the scan, land, and segments of tracks that are there. All others may be spray.
 std::vector<bool> Surroundings::TakenSegments(const std::vector<segments_t>& labels, std::span<const tracks_t> tracks) const {
   std::vector<bool> is_taken;
   const auto take = [&is_taken](std::int32_t id) {
@@ -239,7 +239,8 @@ bool Surroundings::AddReturns(Lidar& lidar, const Found& found, const std::vecto
   return is_known;
 }
 
-// Of a structure whose returns count they are nearer to the truth: its outline bridges bays. The boat is in no outline that it is not seen in.
+// Adds the outlines of tracks. Left out are structures whose returns count, as returns are nearer to the truth (an outline bridges bays), and
+// outlines that contain the own boat.
 void Surroundings::AddTracks(std::span<const tracks_t> tracks, const Pose& now, bool has_returns, Look& look) {
   // Segments of the second lidar have greater ids.
   const auto is_of_first = [](std::int32_t id) { return id <= std::numeric_limits<std::int16_t>::max(); };
@@ -301,7 +302,7 @@ Look Surroundings::LookAt(std::span<const tracks_t> tracks) {
       if (i == 0) ++counts_["looks_without_scan"];
       continue;
     }
-    // Ids in TRACKS are those of the first lidar.
+    // Segment ids in TRACKS are ids of the first lidar.
     const auto is_taken = TakenSegments(*found.labels, i == 0 ? tracks : std::span<const tracks_t>());
     if (AddReturns(lidars_[i], found, is_taken, now, look)) sights[i] = &*lidars_[i].sight;
   }

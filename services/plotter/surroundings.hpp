@@ -1,4 +1,4 @@
-// What is around the boat, of the scan that TRACKS are of: the returns of each lidar, the outlines of tracks, and where nobody looked.
+// The surroundings of the boat at the scan of TRACKS: returns of each lidar, outlines of tracks, and sectors into which nobody looked.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -64,12 +64,12 @@ class Surroundings {
     const std::vector<lidar_scan_t>* scan = nullptr;
     const std::vector<segments_t>* labels = nullptr;
   };
-  /// Horizontal places in the vessel frame of now, of points in that of then.
+  /// Transform of points in the vessel frame of an earlier time to horizontal places in the present vessel frame.
   struct ToNow {
     Eigen::Matrix<double, 2, 3> turn = Eigen::Matrix<double, 2, 3>::Identity();
     Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();
-    double turned_rad = 0.0;  // the bow since, clockwise
-    bool is_known = true;     // the way since; also where nobody knows a place at all
+    double turned_rad = 0.0;  // turn of the bow since then, clockwise
+    bool is_known = true;     // the way since then is known; true also where no place is ever known
   };
 
   Found FirstOf(const tracks_t& tracks) const;
@@ -78,7 +78,7 @@ class Surroundings {
   ToNow ToNowFrom(const Pose* now, Utime time) const;
   void WatchForCovers(Lidar& lidar, const std::vector<lidar_scan_t>& scan);
   bool AddReturns(Lidar& lidar, const Found& found, const std::vector<bool>& is_taken, const Pose* now, Look& look);
-  /// @return whether the own motion within it is known
+  /// @return whether the own motion within the part is known
   bool AddPart(Lidar& lidar, const lidar_scan_t& scan, const segments_t& labels, const std::vector<bool>& is_taken, const Pose* now, Look& look);
   void AddTracks(std::span<const tracks_t> tracks, const Pose& now, bool has_returns, Look& look);
   void AddLand(const tracks_t& tracks, const Pose& now, Look& look);

@@ -32,7 +32,7 @@ inline constexpr Fault kTracksCode = "tracks_refused_code";      // a status tha
 inline constexpr Fault kTracksId = "tracks_refused_id";          // ids that do not increase, 0 or -1
 inline constexpr std::array kTracksFaults{kTracksTime, kTracksParts, kTracksNumber, kTracksCode, kTracksId};
 
-inline constexpr Fault kAlertsTime = "alerts_refused_time";  // of it or of an alert: does not exist
+inline constexpr Fault kAlertsTime = "alerts_refused_time";  // the time of the message or of an alert does not exist
 inline constexpr Fault kAlertsCode = "alerts_refused_code";  // a cause, level or state that does not exist
 inline constexpr Fault kAlertsText = "alerts_refused_text";  // more than 1000 bytes
 inline constexpr Fault kAlertsId = "alerts_refused_id";      // 0, out of bounds, or twice
@@ -45,7 +45,7 @@ using GivenNames = std::map<std::int64_t, std::string>;
 struct TracksPart {
   Utime time;                   // to which the states are propagated
   Utime begin;                  // of the tracker's process: ids of another begin are of other tracks
-  std::vector<Target> targets;  // by id; tentative ones are kAcquiring
+  std::vector<Target> targets;  // by id; tentative targets are kAcquiring
 };
 
 /// The whole message is valid, or it is refused.

@@ -23,10 +23,10 @@ constexpr std::string_view kLcmSelfTest = "LCM_SELF_TEST";
 constexpr std::chrono::seconds kRunInfoPeriod(10);
 // Channels outside of the table that are named in warnings.
 constexpr std::size_t kMaxUnknownNames = 20;
-// Own RUN_INFO that may be on its way through the bus. One that was lost there is never asked for again.
+// Own RUN_INFO messages that may be on their way through the bus. The bound matters as a message that the bus lost never comes back.
 constexpr std::size_t kMaxOwnRunInfos = 8;
 
-// AdvanceTo is called twice a second; a stop of the process is no minute that passed, and no silence of a publisher.
+// AdvanceTo is called twice a second; a longer step is a stop of the process, which counts neither as time passed nor as silence of a publisher.
 constexpr std::chrono::milliseconds kMostPassed(600);
 // A busy disk finishes a block of 1 MB in this time.
 constexpr std::chrono::seconds kStandingDisk(2);
@@ -68,7 +68,7 @@ void Service::AdvanceTo(Utime now) {
   for (auto& [name, guard] : guards_) {
     if (const auto num_missing = guard.Release(time_.passed())) NoteMissing(*bus::FindChannel(name), *num_missing);
   }
-  WatchDisk();  // before a new log hides why the old one ended
+  WatchDisk();  // before a new log hides why the old log ended
   const auto status = writer_.Status();
   if (!status.is_recording) {
     if (!status.is_waiting_for_file) BeginFile(now, false);
@@ -86,7 +86,7 @@ void Service::Rotate(Utime now) { BeginFile(now, true); }
 
 void Service::OnEvent(std::string_view channel, Bytes bytes) {
   if (!IsRecordable(channel, bytes)) return;
-  if (channel == bus::kRunInfo.name && IsOwnRunInfo(bytes)) return;  // written when it was sent
+  if (channel == bus::kRunInfo.name && IsOwnRunInfo(bytes)) return;  // was written to the log when it was sent
   const bus::Channel* known = bus::FindChannel(channel);
   if (known != nullptr) {
     WatchGaps(*known, bytes);
@@ -171,7 +171,7 @@ void Service::WatchGaps(const bus::Channel& channel, Bytes bytes) {
   ++traffic.num_messages;
   if (bus::HasSeveralPublishers(channel)) return;  // each process counts for itself
   const auto place = bus::IsGuarded(channel) ? bus::PlaceOf(channel, bytes) : std::nullopt;
-  if (!place) return;  // its readers refuse it, or it does not count
+  if (!place) return;  // a message that readers refuse, or whose numbers do not count
   auto found = guards_.find(channel.name);
   if (found == guards_.end()) found = guards_.emplace(std::string(channel.name), bus::StreamGuard(channel)).first;
   const auto num_lost = found->second.Next(*place, time_.Advance(clock_())).num_lost;

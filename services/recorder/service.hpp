@@ -25,17 +25,17 @@ namespace lookout::recorder {
 
 class Service {
  public:
-  /// Makes the folder and the log, with RUN_INFO as its first event. Where the disk has no more than its reserve it waits for room.
+  /// Makes the folder and the log, with RUN_INFO as its first event. Where the disk has no more than its reserve the service waits for room.
   ///
   /// @param run_info  what runs, without time and number
-  /// @param clock     host time: that of an event is when it is received
+  /// @param clock     host time: an event's time is its reception
   /// @throws std::runtime_error when the log cannot be made and begun
   Service(bus::Bus& bus, const Params& params, run_info_t run_info, std::function<Utime()> clock, Disk disk = RealDisk());
 
-  /// RUN_INFO every 10 s, a new log when it is time for one, or where the one before failed. To be called once a second at least.
+  /// Sends RUN_INFO every 10 s; begins a new log when the log is old enough, or where it failed. To be called once a second at least.
   void AdvanceTo(Utime now);
 
-  /// Goes on in a new log. Each event is in one of the two, and in one only.
+  /// Goes on in a new log. Each event is in either the old or the new log, never in both.
   void Rotate(Utime now);
 
   /// Waits until all that was received is on the disk, or lost.
@@ -72,7 +72,7 @@ class Service {
   DiskWriter writer_;
   Utime file_start_;
   Utime last_run_info_;
-  std::int64_t file_bytes_ = 0;  // of the file when all that was passed to the writer is in it
+  std::int64_t file_bytes_ = 0;  // size of the file once the writer has written all that was passed to it
   std::int64_t num_file_events_ = 0;
   std::vector<std::uint8_t> event_;                                      // scratch
   std::deque<std::vector<std::uint8_t>> own_run_infos_;                  // sent, and not yet come back from the bus
@@ -80,7 +80,7 @@ class Service {
   std::map<std::string, bus::StreamGuard, std::less<>> guards_;          // watch only: everything is recorded
   std::set<std::string, std::less<>> unknown_channels_;
   std::vector<std::string> warnings_;
-  DiskStatus seen_{.is_recording = true};  // when no log was waited for last
+  DiskStatus seen_{.is_recording = true};  // status when no new log was waited for last
   std::int64_t num_unknown_ = 0;
   std::int64_t num_nameless_ = 0;
   std::int64_t num_name_too_long_ = 0;
@@ -90,7 +90,7 @@ class Service {
   Recently disturbed_;
   Recently raw_missing_;
   std::int64_t num_missing_ = 0;      // gaps in seq, of any channel
-  std::int64_t num_raw_missing_ = 0;  // of these, of raw ones
+  std::int64_t num_raw_missing_ = 0;  // of these, gaps of raw channels
 };
 
 }  // namespace lookout::recorder

@@ -26,10 +26,10 @@ class ArchiveFolder {
   std::filesystem::path Result(const std::string& key) const { return folder_ / "results" / key.substr(0, 2) / key; }
   std::filesystem::path Sidecar(const std::string& key) const { return folder_ / "results" / key.substr(0, 2) / (key + ".json"); }
 
-  /// What differs from run to run and computer to computer: times, memory, the last lines of a failure. No digest is over it.
+  /// File of values that differ from run to run and computer to computer: times, memory, the last lines of a failure. No digest covers it.
   std::filesystem::path Usage(const std::string& key) const { return folder_ / "usage" / key.substr(0, 2) / (key + ".json"); }
 
-  /// Of units under way, and lists of what is to be done.
+  /// Folder of units under way, and of lists of units to be done.
   std::filesystem::path Work() const { return folder_ / "work"; }
   std::filesystem::path Work(const std::string& key) const { return Work() / key; }
   std::filesystem::path WorkLock(const std::string& key) const { return Work() / (key + ".lock"); }

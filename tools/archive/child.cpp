@@ -28,7 +28,7 @@ namespace {
 constexpr std::size_t kMostOutBytes = 1024UL * 1024;
 constexpr std::size_t kMostErrorBytes = 64UL * 1024;
 constexpr int kExitNotStarted = 127;
-constexpr std::size_t kMostStopLetters = 200;  // of a line that says which signal ended a program
+constexpr std::size_t kMostStopLetters = 200;  // most letters of a line that says which signal ended a program
 
 struct Pipe {
   int read_end = -1;

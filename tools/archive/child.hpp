@@ -1,4 +1,4 @@
-// A program that is run to its end, with what it says.
+// A program that is run to its end, and its output.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 namespace lookout::archive {
 
 struct ChildEnd {
-  int exit_code = 0;  // of one that ended by itself
-  int signal = 0;     // 0: it ended by itself
-  std::string out;    // standard output, at most 1 MB of it
+  int exit_code = 0;  // of a program that ended by itself
+  int signal = 0;     // 0: the program ended by itself
+  std::string out;    // standard output, at most the first 1 MB
   std::string error;  // the last 64 kB of standard error
   double wall_s = 0;
   double cpu_s = 0;

@@ -31,7 +31,7 @@ VersionFacts FactsOf(Database& index, const std::string& name) {
   return {find.Text(0), find.Text(1), find.Text(2), find.Text(3), find.Text(4), find.Text(5)};
 }
 
-// Of a file of usage/, which nothing vouches for: what is wrong is not known.
+// Reads a file of usage/, which no digest protects: wrong values count as not known.
 void TakeUsage(const std::filesystem::path& file, Standing& standing) {
   std::ifstream in(file, std::ios::binary);
   const auto json = nlohmann::json::parse(in, nullptr, false);
@@ -202,11 +202,11 @@ double ComparedUnit::Badness() const {
   constexpr double kNotDone = 1000;
   constexpr double kPerPoint = 10;
   constexpr double kPerAlert = 2;
-  constexpr double kPerObstacle = 0.1;  // of a scan: 1 for a second of it
+  constexpr double kPerObstacle = 0.1;  // per scan with a lost or gained obstacle: a second of scans adds 1
   double badness = a.state == Standing::State::kDone && b.state != Standing::State::kDone ? kNotDone : 0;
   if (IsTruthMissingUnderB()) badness += kNotDone;
   const double drop = Truth(comparison.truth_a, "miou") - Truth(comparison.truth_b, "miou");
-  if (drop > 0) badness += kPerPoint * drop;  // false where one is not known
+  if (drop > 0) badness += kPerPoint * drop;  // false where one of the two is not known
   if (const auto& tracks = comparison.tracks) badness += static_cast<double>(tracks->num_lost + tracks->num_gained);
   if (const auto& alerts = comparison.alerts) badness += kPerAlert * static_cast<double>(alerts->num_lost + alerts->num_gained);
   if (const auto& obstacles = comparison.obstacles) badness += kPerObstacle * static_cast<double>(obstacles->num_lost + obstacles->num_gained);
@@ -244,7 +244,7 @@ bool Compare(const ArchiveFolder& archive, const CompareRequest& request, std::o
   std::vector<Condition> conditions;
   conditions.reserve(request.fail_if.size());
   for (const auto& text : request.fail_if) conditions.push_back(ParseCondition(text));
-  ReadIndex(archive);  // there must be one
+  ReadIndex(archive);  // throws where there is no index
   Comparison comparison;
   {
     const io::FileLock lock(archive.IndexLock(), io::FileLock::AtEnd::kStays, [&out] {
@@ -261,7 +261,7 @@ bool Compare(const ArchiveFolder& archive, const CompareRequest& request, std::o
   }
   std::ranges::stable_sort(comparison.units, std::greater(), [](const ComparedUnit& unit) { return unit.Badness(); });
   comparison.figures = FiguresOf(comparison.units);
-  for (const auto& condition : conditions) Holds(condition, comparison.figures);  // wrong ones, before files are written
+  for (const auto& condition : conditions) Holds(condition, comparison.figures);  // throws for wrong conditions before files are written
   if (!request.csv.empty()) WriteCsv(comparison, request.csv, request.force);
   if (!request.html.empty()) WritePage(archive, comparison, request);
   for (const auto& [name, value] : comparison.figures) out << fmt::format("{:<34} {}\n", name, value ? fmt::format("{:.4g}", *value) : "-");

@@ -27,7 +27,7 @@ struct Standing {
   enum class State { kDone, kFailed, kNotDone };
   State state = State::kNotDone;
   std::string key;
-  std::string reason;  // of a failure
+  std::string reason;  // why the unit failed
   std::optional<double> replay_s;
   std::optional<double> cpu_s;
   std::optional<double> peak_bytes;
@@ -44,14 +44,14 @@ struct ComparedUnit {
   std::vector<std::string> files;  // of the recording, as PathText
   Standing a;
   Standing b;
-  UnitComparison comparison;  // where both are done
+  UnitComparison comparison;  // where the unit is done under both versions
 
   bool AreBothDone() const { return a.state == Standing::State::kDone && b.state == Standing::State::kDone; }
   /// Whether a figure against the truth is known under the other version alone.
   bool IsTruthMissingUnderA() const;
   bool IsTruthMissingUnderB() const;
-  /// Greater is worse. 1000 for what is not done any more, and for figures against the truth that B lacks and A has; 10 for each point of mIoU lost,
-  /// 2 for an alert lost or gained, 1 for a track lost or gained.
+  /// Greater is worse. 1000 for a unit that is not done any more, and for figures against the truth that B lacks and A has; 10 for each point of mIoU
+  /// lost, 2 for an alert lost or gained, 1 for a track lost or gained.
   double Badness() const;
 };
 
@@ -68,18 +68,18 @@ struct Comparison {
   VersionFacts a;
   VersionFacts b;
   std::vector<ComparedUnit> units;  // worst first
-  std::vector<std::string> only_a;  // runs that have no such unit in the other version
+  std::vector<std::string> only_a;  // runs of units that the other version does not have
   std::vector<std::string> only_b;
   Figures figures;
 };
 
-/// Sums and means over all units, by name; those of two versions as NAME_a and NAME_b, with NAME_drop (a - b) and NAME_rise (b - a).
+/// Sums and means over all units, by name; figures that exist under two versions as NAME_a and NAME_b, with NAME_drop (a - b) and NAME_rise (b - a).
 Figures FiguresOf(const std::vector<ComparedUnit>& units);
 
 /// A row per unit. @throws as io::OutputFile
 void WriteCsv(const Comparison& comparison, const std::filesystem::path& file, bool force);
 
-/// One page that needs nothing else. Pictures are those of the results.
+/// One page that needs no other file. Pictures come from the results.
 /// @throws as io::OutputFile
 void WritePage(const ArchiveFolder& archive, const Comparison& comparison, const CompareRequest& request);
 

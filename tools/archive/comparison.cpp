@@ -30,7 +30,7 @@ struct Place {
   bool is_relative = false;
 };
 
-// The columns of a place in a table of obstacles or tracks. A table may lack those of the map.
+// The columns of a place in a table of obstacles or tracks. A table may lack the columns of the map.
 class PlaceColumns {
  public:
   explicit PlaceColumns(const CsvReader& reader) : latitude_(reader.Place("latitude_deg")), longitude_(reader.Place("longitude_deg")) {
@@ -246,7 +246,8 @@ std::map<std::string, double> ReadTruth(const fs::path& file) {
 
 void KeepLeast(std::optional<std::int64_t>& least, std::int64_t value) { least = std::min(least.value_or(value), value); }
 
-// Whether a table is of both. Of a channel without messages there is no file: its table is empty. A table that a version does not export is not.
+// Whether both results hold a table. A channel without messages has no file: its table counts as there, and is empty. A table that a version does not
+// export is not there.
 class SharedTables {
  public:
   SharedTables(const fs::path& a, const fs::path& b) : a_(a), b_(b), totals_a_(Totals(a)), totals_b_(Totals(b)) {}

@@ -1,4 +1,4 @@
-// What two versions make of the same run.
+// Compares the results of two versions for the same run.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ struct ChannelDifference {
   std::string channel;
   std::int64_t num_a = 0;
   std::int64_t num_b = 0;
-  std::int64_t num_different = 0;              // pairs of one number, and those that only one has
-  std::int64_t first_number = 0;               // of the first that differs, from 0
+  std::int64_t num_different = 0;              // pairs of one number that differ, and messages that only one version has
+  std::int64_t first_number = 0;               // of the first message that differs, from 0
   std::optional<std::int64_t> first_utime_us;  // of its message, in A or else in B
 };
 
-/// What is in both, in A alone, in B alone.
+/// Numbers of things in A, in B, in A alone and in B alone.
 struct Balance {
   std::int64_t num_a = 0;
   std::int64_t num_b = 0;
@@ -28,13 +28,13 @@ struct Balance {
   std::int64_t num_gained = 0;  // the other way round
 };
 
-/// Of a unit that is done under both.
+/// Comparison of a unit that is done under both versions.
 struct UnitComparison {
   std::vector<ChannelDifference> differences;  // by the time of the first difference; empty: all messages are equal
-  std::optional<Balance> tracks;               // confirmed ones; nullopt: not exported
-  std::optional<Balance> obstacles;            // sure ones with a place, of all scans
+  std::optional<Balance> tracks;               // confirmed tracks; nullopt: not exported
+  std::optional<Balance> obstacles;            // sure obstacles with a place, of all scans
   std::optional<Balance> alerts;
-  std::optional<std::int64_t> first_lost_us;  // track or alert: when it begins
+  std::optional<std::int64_t> first_lost_us;  // begin of the first lost track or alert
   std::map<std::string, double> truth_a;      // figures of lookout-eval
   std::map<std::string, double> truth_b;
 };

@@ -42,7 +42,7 @@ void CutFinder::AddRaw(std::string_view channel, std::int64_t time_us, Mark mark
     }
   }
   if (pending_us_ && mark == Mark::kStart) stream.has_begun_again = true;
-  if (pending_us_ && !stream.has_begun_again) pending_us_.reset();  // it went on, or is new
+  if (pending_us_ && !stream.has_begun_again) pending_us_.reset();  // this stream went on without a start mark, or is new
   stream.is_there = true;
   stream.has_ended = mark == Mark::kEnd;
   Confirm();

@@ -18,8 +18,8 @@ enum class Mark { kNone, kStart, kEnd };
 Mark MarkOf(std::string_view channel, Bytes bytes);
 
 /// Finds the times at which every process had ended and began anew: both raw channels end with an end mark and begin again with a start mark, and the
-/// next ALERTS are of another process than the last ones. Where the tracker went on, or no ALERTS tell that it did not, its tracks live on over the
-/// marks: no cut. Neither where a clock went back: a part is a stretch of log time.
+/// next ALERTS come from another process than the last ALERTS. Where the tracker went on, or no ALERTS tell that it did not, its tracks live on over
+/// the marks: there is no cut. There is no cut either where a clock went back, as a part is a stretch of log time.
 class CutFinder {
  public:
   /// A message of LIDAR_PACKETS or NAV_RAW, in the order of the log.

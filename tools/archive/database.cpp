@@ -102,7 +102,7 @@ Transaction::~Transaction() {
   if (!is_open_) return;
   try {
     database_.Execute("ROLLBACK");
-  } catch (const std::exception&) {  // it has ended by itself: the disk is full, say
+  } catch (const std::exception&) {  // the transaction has ended by itself, as on a full disk
     is_open_ = false;
   }
 }

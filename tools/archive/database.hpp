@@ -54,7 +54,7 @@ class Database {
 
   void Execute(const std::string& sql);
   Statement Prepare(std::string_view sql) { return {database_.get(), sql}; }
-  /// Of a statement with one value; nullopt: no row.
+  /// The value of a statement that gives one value; nullopt: no row.
   std::optional<std::string> Value(std::string_view sql);
   sqlite3* get() const { return database_.get(); }
 

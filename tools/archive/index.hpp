@@ -9,7 +9,7 @@
 
 namespace lookout::archive {
 
-/// Of the tables, and of the results' sidecars and keys: results of another format are not used.
+/// Format of the tables, and of the sidecars and keys of results: results of another format are not used.
 inline constexpr int kFormat = 1;
 
 /// Makes folder and index where they are missing.

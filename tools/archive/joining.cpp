@@ -10,7 +10,7 @@ namespace lookout::archive {
 
 namespace {
 
-// What a recorder may lose between two files.
+// Most messages, and longest time, that a recorder may lose between two files of one run.
 constexpr std::int64_t kMostLost = 1000;
 constexpr std::int64_t kLongestGapUs = 10'000'000;
 

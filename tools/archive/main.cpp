@@ -36,7 +36,7 @@ std::vector<std::string> TableNames() {
   return names;
 }
 
-// What a command does, to be called once the line is parsed. @return exit code
+// The work of a command, to be called once the command line is parsed. @return exit code
 using Command = std::function<int(const archive::ArchiveFolder&)>;
 
 struct Requests {

@@ -109,7 +109,7 @@ void KeepConfig(const ArchiveFolder& archive, const Version& version, const Prog
     fs::copy_file(version.config / file, partial / file);
   }
   if (DigestOfConfig(partial) != version.config_digest) throw std::runtime_error(version.config.string() + ": was changed meanwhile");
-  CheckConfig(partial, programs);  // it is whole: what it names is in it
+  CheckConfig(partial, programs);  // the copy is whole: the files that it names are in it
   fs::rename(partial, place);
   io::SyncName(place);
 }
@@ -206,7 +206,7 @@ std::vector<Part> PartsOf(std::int64_t start_us, const std::vector<std::int64_t>
 void MakePlan(const ArchiveFolder& archive, const PlanRequest& request, std::ostream& out) {
   const auto programs = ProgramsIn(request.programs);
   const auto versions = VersionsOf(request, programs);
-  ReadIndex(archive);  // there must be one
+  ReadIndex(archive);  // throws where there is no index
   const io::FileLock lock(archive.IndexLock(), io::FileLock::AtEnd::kStays, [&out] {
     out << "another program changes the index: waiting\n" << std::flush;
   });

@@ -13,8 +13,8 @@ namespace lookout::archive {
 
 struct Programs {
   std::filesystem::path folder;
-  std::string digest;   // over all of them: the same where a unit gives the same bytes
-  std::string version;  // as lookout-replay tells it
+  std::string digest;   // over all programs: equal digests mean that a unit gives equal bytes
+  std::string version;  // as lookout-replay states it
   bool has_eval = false;
 };
 
@@ -24,10 +24,10 @@ std::filesystem::path OwnProgramFolder();
 /// Reads the programs. @throws std::invalid_argument if the folder is empty, std::runtime_error where a program that is needed is missing
 Programs ProgramsIn(const std::filesystem::path& folder);
 
-/// Over the programs of a folder that are there. @throws std::runtime_error as DigestOfFile
+/// Digest over the programs of a folder that exist. @throws std::runtime_error as DigestOfFile
 std::string DigestOfPrograms(const std::filesystem::path& folder);
 
-/// What DigestOfPrograms reads, there or not.
+/// The files that DigestOfPrograms reads, whether or not they exist.
 std::vector<std::filesystem::path> FilesOfPrograms(const std::filesystem::path& folder);
 
 /// Digests of the programs of folders, which are read again only when a file of them changed.

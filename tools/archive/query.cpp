@@ -62,7 +62,7 @@ void PrintRows(Statement& statement, std::ostream& out) {
 }  // namespace
 
 void Query(const ArchiveFolder& archive, const std::string& sql, std::ostream& out) {
-  ReadIndex(archive);  // there must be one
+  ReadIndex(archive);  // throws where there is no index
   auto files = FilesOfDoneResults(archive);
   auto index = ReadIndex(archive);
   for (auto& [name, list] : files) AddResultTable(index, name, std::move(list));

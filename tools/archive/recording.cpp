@@ -79,7 +79,7 @@ Recording LookAtLog(const std::filesystem::path& file) {
   });
   EventDigest digest;
   CutFinder cuts;
-  std::string writer;  // version of the program that wrote it
+  std::string writer;  // version of the program that wrote the log
   std::string other_type;
   std::int64_t num_raw = 0;
   const auto is_wanted = [](std::string_view channel) { return IsReadByReplay(channel) || channel == bus::kRunInfo.name; };

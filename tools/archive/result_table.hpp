@@ -18,9 +18,9 @@ struct ResultFile {
   std::filesystem::path file;
 };
 
-/// Makes the table `name` of the files, which are read as it is read; those of other versions or runs than a query names are not opened. The columns
-/// are version, run, scene, part, then those of the first file, by their names: of files with other columns those that they share.
-/// The database holds the table until it is closed.
+/// Makes the table `name` of the files, which are read while the table is read; files of other versions or runs than a query names are not opened.
+/// The columns are version, run, scene, part, then the columns of the first file, by their names; of files with other columns the columns that they
+/// share with the first. The database holds the table until it is closed.
 void AddResultTable(Database& database, const std::string& name, std::vector<ResultFile> files);
 
 }  // namespace lookout::archive

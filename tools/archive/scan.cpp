@@ -66,7 +66,7 @@ bool IsBelow(const std::string& path, const std::vector<fs::path>& folders) {
   });
 }
 
-// Of what could not be looked at nothing is known: what the index says of it and of what is below it is kept.
+// Nothing is known about paths that could not be read: the index keeps its rows for these paths and all below.
 bool IsAtOrBelow(const std::string& path, const std::vector<fs::path>& unreadable) {
   return std::ranges::any_of(unreadable, [&path](const fs::path& one) {
     const auto text = PathText(one);

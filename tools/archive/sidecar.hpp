@@ -20,9 +20,9 @@ struct Sidecar {
   };
 
   Recipe recipe;
-  bool is_done = false;                     // else failed, as the same input always will
-  std::string reason;                       // of a failure
-  std::vector<std::string> remarks;         // what is not there, and why: "tracks: no TRACKS"
+  bool is_done = false;                     // else the unit failed, as the same input always will
+  std::string reason;                       // why the unit failed
+  std::vector<std::string> remarks;         // missing outputs, and why: "tracks: no TRACKS"
   std::map<std::string, OutputFile> files;  // by name
 };
 
@@ -32,18 +32,19 @@ std::string SidecarText(const Sidecar& sidecar);
 /// @throws std::runtime_error where the text is torn, was changed, or is of another format
 Sidecar SidecarOfText(const std::string& text);
 
-/// What a result is worth.
+/// Whether a result can be used.
 struct Validity {
   bool is_valid = false;
   bool is_done = false;  // of a valid one
-  std::string reason;    // of a failed one, or why it is not valid; empty: there is no sidecar
-  std::string stamp;     // of a valid one: changes with each of its files
+  std::string reason;    // why a valid result failed, or why the result is not valid; empty: there is no sidecar
+  std::string stamp;     // of a valid result: changes with each of its files
 };
 
 /// Reads the sidecar and all files of the result, and compares.
 Validity Verify(const ArchiveFolder& archive, const std::string& key);
 
-/// @return what Verify would give as `stamp` if nothing has changed, by the status of the files named in it alone; empty: something is not there
+/// @return what Verify would give as `stamp` if nothing has changed, by the status of the files named in the sidecar alone; empty: a file is not
+///         there
 std::string StampOfResult(const ArchiveFolder& archive, const std::string& key, const std::string& verified_stamp);
 
 /// Removes whatever stands in the place of the result of a key.

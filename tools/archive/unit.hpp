@@ -9,7 +9,7 @@
 
 namespace lookout::archive {
 
-/// What decides about every byte of a result, in words.
+/// The inputs that determine every byte of a result, in words.
 struct Recipe {
   std::string run_digest;
   std::string run_kind;
@@ -24,7 +24,7 @@ struct Recipe {
   bool operator==(const Recipe&) const = default;
 };
 
-/// Where a worker finds it.
+/// An input file, where a worker finds it.
 struct InputFile {
   std::filesystem::path path;
   std::int64_t size_bytes = 0;
@@ -34,7 +34,7 @@ struct InputFile {
 struct Unit {
   std::string key;
   Recipe recipe;
-  std::string run;  // its name
+  std::string run;  // the run's name
   std::vector<InputFile> inputs;
   std::filesystem::path truth;
   std::filesystem::path programs;
@@ -46,7 +46,7 @@ std::string RecipeText(const Recipe& recipe);
 /// SHA-256 of the recipe and the format, hexadecimal.
 std::string KeyOf(const Recipe& recipe);
 
-/// A line of a list of units, and back. @throws std::runtime_error for a line that is none, or whose key is not that of its recipe
+/// A line of a list of units, and back. @throws std::runtime_error for a line that is none, or whose key does not belong to its recipe
 std::string UnitLine(const Unit& unit);
 Unit UnitOfLine(const std::string& line);
 

@@ -54,7 +54,7 @@ class Walker {
   }
 
  private:
-  // What is a link to nothing or in a circle, or gone meanwhile, is passed over. All else that cannot be looked at is a fault.
+  // A link to nothing or in a circle, or a path that is gone meanwhile, is skipped. Any other path whose status cannot be read is a fault.
   std::optional<struct stat> StatusOrFault(const fs::path& path) {
     const auto status = StatusOf(path);
     if (!status && errno != ENOENT && errno != ELOOP) walk_.faults.emplace_back(path, std::system_category().message(errno));

@@ -32,10 +32,10 @@ Walk FilesBelow(const std::vector<std::filesystem::path>& folders, const std::fi
 /// (rain-11.truth for rain-11.lcmlog), or "truth" where the file is the only recording of its folder. @return empty: none
 std::filesystem::path TruthOf(const std::filesystem::path& file, bool is_only_one);
 
-/// What lookout-eval reads of a truth, there or not.
+/// The files of a truth that lookout-eval reads, whether or not they exist.
 std::vector<std::filesystem::path> FilesOfTruth(const std::filesystem::path& folder);
 
-/// Over those that are there. @param digest_of  of the bytes of one
+/// Digest over the files of a truth that exist. @param digest_of  gives the digest of the bytes of a file
 std::string DigestOfTruth(const std::filesystem::path& folder, const std::function<std::string(const std::filesystem::path&)>& digest_of);
 
 }  // namespace lookout::archive

@@ -80,7 +80,7 @@ class UnitWork {
       fs::remove_all(folder_ / "out");
       fs::create_directory(folder_ / "out");
     }
-    CheckInputs();  // those that were read are those that were planned
+    CheckInputs();  // throws where the inputs that were read are not those of the plan
     if (StampsOfOthers() != others_) throw NotNow(UnitEnd::kNotBegun, "its truth or the programs were changed meanwhile: scan and plan again");
     for (const auto& file : io::FilesIn(folder_ / "out")) {
       const auto stamp = StampOf(file);
@@ -112,7 +112,7 @@ class UnitWork {
   }
 
   using Stamps = std::vector<std::optional<FileStamp>>;
-  // Of the truth and the programs: they are as large as the work, so their bytes are read once, before it.
+  // Stamps of the truth and the programs. Reading their bytes takes as long as the work, so the bytes are read only once, before the work.
   Stamps StampsOfOthers() const {
     auto files = FilesOfPrograms(unit_.programs);
     if (!unit_.truth.empty()) std::ranges::move(FilesOfTruth(unit_.truth), std::back_inserter(files));
@@ -206,7 +206,7 @@ class UnitWork {
     WriteChannels(end.out);
   }
 
-  // Of lookout-replay's output: a line per channel, its name, count and digest.
+  // Writes channels.csv from lookout-replay's output: a line per channel with name, count and digest.
   void WriteChannels(const std::string& text) {
     std::string csv = "channel,count,sha256\n";
     std::istringstream lines(text);
@@ -265,7 +265,7 @@ void PutInPlace(const ArchiveFolder& archive, const Unit& unit, const Sidecar& s
   const auto place = archive.Result(unit.key);
   fs::create_directories(place.parent_path());
   RemoveResult(archive, unit.key);
-  io::SyncName(archive.Work(unit.key) / "out/channels.csv");  // the names of all, as they are in one folder
+  io::SyncName(archive.Work(unit.key) / "out/channels.csv");  // brings the names of all outputs to the disk, as they are in one folder
   fs::rename(archive.Work(unit.key) / "out", place);
   io::SyncName(place);
   WriteText(archive.Sidecar(unit.key), SidecarText(sidecar));
@@ -278,7 +278,7 @@ UnitOutcome WorkOn(const ArchiveFolder& archive, const Unit& unit, KnownPrograms
   fs::create_directories(archive.Work());
   const io::FileLock lock(archive.WorkLock(unit.key), io::FileLock::AtEnd::kIsRemoved);
   if (Verify(archive, unit.key).is_valid) return {UnitEnd::kAlready, ""};
-  fs::remove_all(archive.Work(unit.key));  // of a worker that was killed
+  fs::remove_all(archive.Work(unit.key));  // remains of a worker that was killed
   try {
     UnitWork work(archive, unit, programs);
     const auto sidecar = work.Do();
@@ -306,7 +306,7 @@ bool WorkOnBatch(const ArchiveFolder& archive, const fs::path& batch, std::ostre
   bool is_all = true;
   for (std::string line; std::getline(in, line);) {
     io::ThrowIfStopAsked();
-    std::string run = "a unit";  // until it is known
+    std::string run = "a unit";  // until the run's name is known
     UnitOutcome outcome;
     try {
       const auto unit = UnitOfLine(line);

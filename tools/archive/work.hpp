@@ -13,9 +13,9 @@ namespace lookout::archive {
 
 enum class UnitEnd {
   kDone,
-  kFailed,      // and will again: a sidecar says so
-  kAlready,     // its result was there
-  kNotBegun,    // the recording, its truth or the programs are not those of the plan
+  kFailed,      // and will fail again: a sidecar says so
+  kAlready,     // the result was there
+  kNotBegun,    // the recording, its truth or the programs have changed since the plan
   kNotFinished  // killed, or the computer failed: another try may succeed
 };
 
@@ -28,7 +28,7 @@ struct UnitOutcome {
 /// Waits while another worker has the unit. @throws io::Stopped; std::runtime_error when the folder of the archive cannot be written
 UnitOutcome WorkOn(const ArchiveFolder& archive, const Unit& unit, KnownPrograms& programs);
 
-/// The units of a file, one after the other; what goes wrong with one does not keep the next from being done. @return whether each is done or failed
+/// The units of a file, one after the other; a fault in one unit does not stop the next. @return whether each is done or failed
 /// @param out  a line per unit that is neither, with the reason
 bool WorkOnBatch(const ArchiveFolder& archive, const std::filesystem::path& batch, std::ostream& out);
 

@@ -66,7 +66,7 @@ struct Range {
   std::size_t to = 0;
 };
 
-// What stands between the braces of `lidar { }`.
+// The range of text between the braces of `lidar { }`.
 std::optional<Range> LidarBlock(const std::string& plain) {
   const auto name = OnlyPlaceOf("lidar", plain, 0, plain.size());
   if (!name) return std::nullopt;

@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::size_t kLeastScans = 100;
 constexpr std::size_t kLeastPairs = 50;
-// What is so high above the water is no water.
+// Returns this high above the water do not come from water.
 constexpr double kStandingM = 0.4;
 // A fit whose pairs disagree by more has found nothing.
 constexpr double kMostAfterM = 1.0;
 const double kMostAfterRad = DegToRad(2.0);
-// The odometer looks at so many scans: it tells the latency to some hundredths, which is enough to begin with.
+// Most scans that the odometer reads: they give the latency to some hundredths of a second, which is enough to begin with.
 constexpr std::size_t kMostOdometryScans = 600;
 
 double FarthestCornerM(const Eigen::AlignedBox3d& box_m, const Eigen::Vector3d& from_m) {
@@ -60,7 +60,7 @@ std::string FaultOf(const Recording& recording) {
 
 constexpr int kNumPasses = 3;
 
-// What a pass is looked at with: from wide to narrow.
+// Parameters of the pairs of a pass: from wide to narrow.
 PairParams PairsOfPass(int pass) {
   PairParams pairs;
   pairs.both_ways = pass + 1 == kNumPasses;
@@ -73,8 +73,8 @@ PairParams PairsOfPass(int pass) {
   return pairs;
 }
 
-// What the residuals do not tell, since it is the same in all of them: edges that look wider from afar, hulls that lean. By seeds 1 and 2 of the
-// simulator.
+// Errors that the residuals do not show, since they are equal in all pairs: edges that look wider from afar, hulls that lean. Found with seeds 1 and
+// 2 of the simulator.
 const double kSystematicYawRad = DegToRad(0.05);
 const double kSystematicTiltRad = DegToRad(0.03);
 constexpr double kSystematicLatencyS = 0.0007;
@@ -85,7 +85,7 @@ Found FoundOf(double value, double sd, double systematic_sd, double most_sd) {
   return {value, whole_sd, std::isfinite(whole_sd) && whole_sd <= most_sd};
 }
 
-// Deviations of roll, pitch and yaw out of those of a rotation about the axes of the vessel.
+// Deviations of roll, pitch and yaw from the covariance of a rotation about the axes of the vessel.
 Eigen::Vector3d AngleSds(const Eigen::Matrix3d& R_vessel_lidar, const Eigen::Matrix3d& rotation_covariance) {
   constexpr double kStep = 1e-5;
   Eigen::Matrix3d jacobian;
@@ -112,7 +112,7 @@ double RootMeanSquare(std::vector<double> squares) {
   return std::sqrt(sum / std::max(1.0, static_cast<double>(squares.size())));
 }
 
-// What pairs disagree by with a correction.
+// How much pairs disagree after a correction.
 Disagreement DisagreementOf(const std::vector<RelativeMotion>& motions, const PoseTrack& track, const Eigen::Vector3d& p_lidar_m,
                             const Correction& correction) {
   std::vector<double> squares_m2;

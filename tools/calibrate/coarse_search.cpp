@@ -22,10 +22,10 @@ constexpr std::size_t kNumRefined = 8;
 constexpr double kWideM = 2.0;
 constexpr double kNarrowM = 1.0;
 const double kApartRad = DegToRad(45.0);
-// A recording tells mountings apart where the best fills so many fewer cubes than the next.
+// A recording tells mountings apart where the best mounting fills at most this share of the cubes of the next best.
 constexpr double kClear = 0.95;
 
-// What one scan saw, and from where.
+// The points of one scan, and the pose from which it saw them.
 struct View {
   Eigen::Isometry3d T_map_vessel = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector3d> points_lidar_m;

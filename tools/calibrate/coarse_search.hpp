@@ -13,14 +13,14 @@ namespace lookout::calibrate {
 
 struct CoarseResult {
   Eigen::Matrix3d R_vessel_lidar = Eigen::Matrix3d::Identity();
-  double share = 1.0;       // of cubes that the returns fill, against returns that fit nowhere: lower is sharper
-  double next_share = 1.0;  // the best of those that are turned against it by 45 deg or more
-  bool is_clear = false;    // the others are clearly less sharp
+  double share = 1.0;       // cubes that the returns of all moments fill, as a share of those that each moment fills alone: lower is sharper
+  double next_share = 1.0;  // the same share of the best mounting that is turned by 45 deg or more from this one
+  bool is_clear = false;    // all such other mountings are clearly less sharp
 };
 
 /// Looks at 24 moments of the 12 s in which the boat turns most, with 6 directions of the lidar's axis and 24 of yaw, and refines the best.
 ///
-/// @param assumed  its mounting is that of boat.txtpb
+/// @param assumed  holds the mounting of boat.txtpb
 /// @return nullopt where there are too few returns
 std::optional<CoarseResult> SearchCoarsely(const std::vector<odometer::Scan>& scans, const PoseTrack& track, const Assumed& assumed);
 

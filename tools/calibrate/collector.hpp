@@ -1,4 +1,4 @@
-// Makes a recording for the calibration out of messages, in the order in which they come: those of a replay, or of a live bus.
+// Makes a recording for the calibration out of messages of a replay or of a live bus, in the order in which they come.
 #pragma once
 
 #include <optional>

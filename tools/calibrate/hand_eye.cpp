@@ -39,7 +39,7 @@ Numbers StepsOf() {
 struct Row {
   Vector6 residual = Vector6::Zero();
   Eigen::Matrix<double, 6, Correction::kNumNumbers> jacobian = Eigen::Matrix<double, 6, Correction::kNumNumbers>::Zero();
-  Matrix6 registration = Matrix6::Zero();  // covariance of what the lidar saw
+  Matrix6 registration = Matrix6::Zero();  // covariance of the motion by the lidar
   Matrix6 weight = Matrix6::Zero();
   std::size_t lag = 0;  // group of pairs that are as far apart in time
   Utime begin;
@@ -96,12 +96,12 @@ double MedianOf(std::vector<double> values) {
   return *middle;
 }
 
-// What the residuals of a lag tell, less what the registration explains. Of few pairs: what was said before.
+// Variances of POSE for each lag: those of the residuals less the part that the registration explains. With few pairs the variance stays as before.
 Variances VariancesOf(const std::vector<Row>& rows, const Variances& before) {
   constexpr std::size_t kLeastOfLag = 10;
   // Median of the square of a normal number.
   constexpr double kMedianSquare = 0.4549;
-  // A pose is not known better than this against another.
+  // The difference of two poses is not known better than this.
   constexpr double kLeastM2 = 0.005 * 0.005;
   constexpr double kLeastRad2 = 1e-4 * 1e-4;
   Variances variances = before;
@@ -215,7 +215,7 @@ Numbers JackknifeSd(const std::vector<Row>& rows, const Numbers& here, const Han
     for (const auto& row : rows) {
       if (block_of(row.begin) != block && block_of(row.end) != block) kept.push_back(&row);
     }
-    if (kept.size() == rows.size()) continue;  // nothing lies in it
+    if (kept.size() == rows.size()) continue;  // the block holds no pairs
     steps.push_back(Solve(kept, here, params).step);
   }
   Numbers mean = Numbers::Zero();

@@ -30,7 +30,7 @@ struct RelativeMotion {
   Matrix6 information = Matrix6::Zero();
 };
 
-/// What is looked for: a small rotation of the assumed mounting (about the axes of the vessel), the place of the lidar against what boat.txtpb says
+/// The unknowns: a small rotation of the assumed mounting (about the axes of the vessel), the place of the lidar relative to that in boat.txtpb
 /// (vessel frame), and the latency.
 struct Correction {
   Eigen::Vector3d rotation_rad = Eigen::Vector3d::Zero();
@@ -44,27 +44,27 @@ struct Correction {
 };
 
 struct HandEyeParams {
-  /// Deviation of the place that boat.txtpb says: that of a ruler.
+  /// Deviation of the place in boat.txtpb, as measured with a ruler.
   double place_sd_m = 0.05;
-  /// Blocks of time of the jackknife that tells the deviations.
+  /// Blocks of time of the jackknife that estimates the deviations.
   int num_blocks = 12;
-  /// Whether deviations are told: it takes as many fits as blocks.
+  /// Whether deviations are estimated: this takes as many fits as blocks.
   bool wants_deviations = true;
 };
 
 struct HandEyeResult {
   Correction correction;
-  /// The larger of the formal deviation (scaled by the residuals) and that of the jackknife.
+  /// The larger of the formal deviation (scaled by the residuals) and the deviation by the jackknife.
   Correction::Numbers sd = Correction::Numbers::Zero();
   Correction::Numbers formal_sd = Correction::Numbers::Zero();
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();  // of correction.rotation_rad, with these deviations
   std::vector<Matrix6> weights;                                   // [motions] of the residuals: inverse of the covariance of registration and POSE
-  std::size_t num_pairs = 0;                                      // that were used: POSE is known at both ends
+  std::size_t num_pairs = 0;                                      // pairs that were used: POSE is known at both ends
   double displacement_rms_m = 0;                                  // of the residuals, each pair weighted as in the fit
   double rotation_rms_rad = 0;
 };
 
-/// The difference between a motion that the lidar saw and what POSE says with this correction: displacement (m), rotation (rad), along the axes of
+/// The difference between a motion by the lidar and the motion by POSE with this correction: displacement (m), rotation (rad), along the axes of
 /// the vessel at the begin. nullopt where POSE is not known at both ends.
 std::optional<Vector6> Residual(const RelativeMotion& motion, const PoseTrack& track, const Eigen::Vector3d& p_vessel_lidar_m,
                                 const Correction& correction);

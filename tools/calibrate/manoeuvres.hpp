@@ -1,4 +1,4 @@
-// What the boat did while it was recorded, and what it should do besides.
+// Motions of the boat in the recording, and motions that are missing in it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What stands, accumulated on the map, with boat.txtpb and with the result.
+// Picture of standing things, accumulated on the map, with boat.txtpb and with the result.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace lookout::calibrate {
 
-/// SVG of two maps side by side, north up: returns of what stands, and the way of the boat. The sharper one has the better mounting.
+/// SVG of two maps side by side, north up: returns of standing things, and the way of the boat. The sharper map has the better mounting.
 ///
 /// @param calibration  with a fit
 std::string PictureOf(const Recording& recording, const Calibration& calibration, const CalibrationParams& params);

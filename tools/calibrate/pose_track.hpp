@@ -14,12 +14,12 @@ struct TrackPose {
   Utime time;
   Eigen::Isometry3d T_map_vessel = Eigen::Isometry3d::Identity();
   double heave_m = 0.0;  // 0 where not known
-  /// Of position (east, north, up; m) and rotation about the axes of the map (rad).
+  /// Covariance of position (east, north, up; m) and rotation about the axes of the map (rad).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// How late POSE is: what was so at a time stands in POSE so much later. Heading and position have one, roll and pitch another: they may come of
-/// different sensors.
+/// How late POSE is: the state of a time stands in POSE this much later. Heading and position have one latency, roll and pitch another, as they may
+/// come from different sensors.
 struct Latency {
   double heading_s = 0.0;
   double tilt_s = 0.0;
@@ -27,7 +27,7 @@ struct Latency {
 
 class PoseTrack {
  public:
-  /// Between poses farther apart nothing is known.
+  /// Between poses farther apart than this nothing is known.
   static constexpr double kMaxBracketS = 0.1;
 
   /// @return false, and adds nothing, where the pose is not later than the last

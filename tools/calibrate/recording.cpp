@@ -15,7 +15,7 @@ Recording ReadRecording(const std::filesystem::path& config_folder, const std::v
   replay::Request request;
   request.only = {"lidar", "navigator"};
   auto inspection = replay::Inspect(files, request);
-  // Both are turned by the mounting that is in question, and would agree with it.
+  // The lidar's motion and the IMU in it are turned by the mounting that is in question, and would agree with it.
   inspection.plan.pose_by_lidar = false;
   replay::Chain chain(config_folder, inspection.plan, [&collector](Utime /*time*/, std::string_view channel, Bytes bytes) {
     if (channel == bus::kLidarScan.name) {

@@ -1,4 +1,4 @@
-// What a recording holds for the calibration: scans, and the poses of the boat, both computed from the raw channels as lookout-replay does.
+// The parts of a recording that the calibration uses: scans, and the poses of the boat, both computed from the raw channels as lookout-replay does.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ using odometer::Scan;
 
 struct Recording {
   std::vector<Scan> scans;  // increasing in time
-  PoseTrack track;          // poses with position, heading of a sensor, roll and pitch, in one map frame
+  PoseTrack track;          // poses with position, heading by a sensor, roll and pitch, in one map frame
   /// Poses that do not serve, by reason.
   int num_poses = 0;
   int num_course_alone = 0;  // the heading is the course over ground

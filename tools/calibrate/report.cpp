@@ -18,7 +18,7 @@ std::string AngleRow(const char* name, const Found& found, double was_rad) {
                      RadToDeg(was_rad));
 }
 
-// What to do about it; empty where it may be 0.
+// Advice about a latency; empty where the latency may be 0.
 std::string LatencyAdvice(const char* what, const Found& found) {
   constexpr double kWorthMentioningS = 0.003;
   if (!found.is_found || std::abs(found.value) < std::max(kWorthMentioningS, 2.0 * found.sd)) return "";

@@ -7,7 +7,7 @@
 
 namespace lookout::calibrate {
 
-/// What was found, with deviations; what is missing; the lines for boat.txtpb. A refusal says why instead.
+/// The results with deviations, the missing motions, and the lines for boat.txtpb; after a refusal its reason instead.
 std::string ReportOf(const Calibration& calibration, const config::BoatFacts& boat);
 
 /// One line "name value sd" a number, for scripts: angles in degrees, latency in ms, height in m. Empty where there is no fit.

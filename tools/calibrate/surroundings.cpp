@@ -55,7 +55,7 @@ class MotionFinder {
       odometer::LocalMap map;
       const Eigen::Vector3d origin_m = moments_[begin]->T_map_vessel.translation();
       AddSurroundings(begin, origin_m, map);
-      // Both ways: what is seen from the one moment may be hidden from the other.
+      // Both ways: things that are seen from one moment may be hidden from the other.
       for (const auto lag : params_.lags) {
         const std::size_t end = begin + lag * params_.key_scans;
         if (end < scans_.size()) AddMotion(begin, end, origin_m, map, motions);
@@ -82,7 +82,7 @@ class MotionFinder {
     }
   }
 
-  // The scan of the moment comes first: a place of the map keeps the points that it got first, and those of other scans lie where POSE says.
+  // The scan of the moment comes first: a place of the map keeps its first points, and the points of other scans are placed by POSE.
   void AddSurroundings(std::size_t middle, const Eigen::Vector3d& origin_m, odometer::LocalMap& map) const {
     AddPoints(middle, origin_m, map);
     for (std::size_t off = 1; off <= params_.half_scans; ++off) {

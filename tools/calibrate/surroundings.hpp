@@ -1,4 +1,4 @@
-// What stands around the boat, out of the scans, and how the boat moved past it.
+// Standing things around the boat, from the scans, and how the boat moved past them.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,11 +13,11 @@
 
 namespace lookout::calibrate {
 
-/// What is assumed while the scans are looked at.
+/// Assumptions with which the scans are read.
 struct Assumed {
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
   Latency latency;
-  double min_range_m = 1.0;  // what is nearer may be the own boat
+  double min_range_m = 1.0;  // nearer returns may come from the own boat
   double max_range_m = 100.0;
   double reference_point_above_water_m = 0.0;
   Eigen::AlignedBox3d own_vessel_box_m;
@@ -30,13 +30,14 @@ std::vector<odometer::MapPoint> StandingIn(const odometer::Scan& scan, const Pos
 
 struct PairParams {
   std::size_t key_scans = 10;                             // between two moments that are compared
-  std::size_t half_scans = 3;                             // on each side of a moment whose returns make its surroundings
+  std::size_t half_scans = 3;                             // scans on each side of a moment whose returns make the moment's surroundings
   std::vector<std::size_t> lags{1, 2, 4, 8, 16, 32, 64};  // moments later
   bool both_ways = true;                                  // each moment against the surroundings of the other, too
-  double search_m = 1.0;                                  // a return may lie so far from where POSE says
+  double search_m = 1.0;                                  // greatest distance of a return from its place by POSE
 };
 
-/// How the vessel moved between moments, by registering what a scan saw with what was seen around another moment. Pairs that do not fit are left out.
+/// How the vessel moved between moments, by registering the points of a scan with the surroundings of another moment. Pairs that do not fit are left
+/// out.
 std::vector<RelativeMotion> MotionsPast(const std::vector<odometer::Scan>& scans, const PoseTrack& track, const Assumed& assumed,
                                         const PairParams& params);
 

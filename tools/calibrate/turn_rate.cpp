@@ -69,7 +69,7 @@ std::optional<TurnLatency> LatencyByTurning(const std::vector<odometer::Motion>&
   double variance = 0.0;
   for (const double rate : rates) variance += (rate - sum) * (rate - sum) / static_cast<double>(rates.size());
   latency.rate_rms_radps = std::sqrt(variance);
-  // Of n differences with variance `least`: the second derivative of their sum of squares over 2 is n times the square of the rate's change.
+  // There are n differences with variance `least`. The second derivative of their sum of squares, halved, is n times the square of the rate's change.
   latency.sd_s = std::sqrt(least / (static_cast<double>(rates.size()) * curvature / (2.0 * kShiftS * kShiftS)));
   if (latency.sd_s > kMaxSdS) return std::nullopt;
   return latency;

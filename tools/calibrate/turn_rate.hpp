@@ -1,4 +1,4 @@
-// Latency between lidar and heading: the rate of turn past what stands against that of POSE.
+// Latency between lidar and heading: compares the rate of turn past standing things with the rate by POSE.
 #pragma once
 
 #include <optional>

@@ -82,7 +82,7 @@ class FootFinder {
   std::vector<std::size_t> order_;  // rings from the lowest up
 };
 
-// The height that most feet hold, without those of one part of the time (kNumParts: with all).
+// The height that lies between the bounds of most feet, without the feet of one part of the time (kNumParts: with all).
 double VotedHeightM(const std::vector<Foot>& feet, std::size_t without) {
   std::vector<double> steps(kNumBins + 1, 0.0);
   for (const auto& foot : feet) {

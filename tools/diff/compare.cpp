@@ -28,7 +28,7 @@ concept WireStruct = requires {
   T::getTypeName();
 };
 
-// Of an array of any dimensions the type of its elements.
+// The type of the elements of an array of any dimensions.
 template <typename T>
 struct ElementOf {
   using Type = T;
@@ -49,7 +49,7 @@ std::string StringText(const std::string& letters) {
   return "\"" + Printable(letters.substr(0, kMaxShownLetters)) + (letters.size() > kMaxShownLetters ? "...\"" : "\"");
 }
 
-// The same text would tell nothing: different bits can print alike (NaN).
+// Different bits can print alike (NaN): then the bits are added, as equal texts would tell nothing.
 Difference NumbersDiffer(std::string a, std::string b, std::uint64_t bits_a, std::uint64_t bits_b) {
   if (a == b) {
     a += fmt::format(" (0x{:x})", bits_a);
@@ -83,7 +83,7 @@ template <WireStruct T>
 std::optional<Difference> CompareFields(const T& a, const T& b, const Tolerances& tolerances, const std::string& path);
 
 // @param path  of the field, without indices
-// @return the difference with what comes behind the name of the field: "[3].centroid_m[0]"
+// @return the difference; its `field` holds the part behind the name of the field: "[3].centroid_m[0]"
 template <typename T>
 std::optional<Difference> CompareValues(const T& a, const T& b, double tolerance, const Tolerances& tolerances, const std::string& path) {
   if constexpr (WireStruct<T>) {
@@ -96,7 +96,7 @@ std::optional<Difference> CompareValues(const T& a, const T& b, double tolerance
   } else if constexpr (std::is_arithmetic_v<T>) {
     return CompareNumbers(a, b, tolerance);
   } else {
-    for (std::size_t i = 0; i < std::size(a); ++i) {  // both have so many: their counts are compared before them
+    for (std::size_t i = 0; i < std::size(a); ++i) {  // both have equally many elements: their counts are compared before
       auto difference = CompareValues(a[i], b[i], tolerance, tolerances, path);
       if (!difference) continue;
       difference->field.insert(0, "[" + std::to_string(i) + "]");

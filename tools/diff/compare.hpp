@@ -13,7 +13,7 @@ namespace lookout::diff {
 
 /// Where two messages differ first, in the order of their fields.
 struct Difference {
-  std::string field;  // "segments[3].centroid_m[0]"; "byte 17" or "size" where the type is not known or the bytes are not of it; "type"
+  std::string field;  // "segments[3].centroid_m[0]"; "byte 17" or "size" where the type is not known or the bytes do not decode; "type"
   std::string a;
   std::string b;
 };

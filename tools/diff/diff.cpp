@@ -27,8 +27,8 @@ namespace lookout::diff {
 namespace {
 
 struct FirstDifference {
-  std::int64_t index = 0;  // of the message on its channel in A, or in B where only that has it; from 0
-  Utime time;              // of its event
+  std::int64_t index = 0;  // of the message on its channel in A, or in B where only B has it; from 0
+  Utime time;              // of the message's event
   Difference difference;
 };
 
@@ -38,7 +38,7 @@ struct ChannelResult {
   std::int64_t num_different = 0;  // pairs
   std::int64_t num_only_a = 0;
   std::int64_t num_only_b = 0;
-  std::int64_t num_behind_a = 0;  // of these, behind the last message of the other log
+  std::int64_t num_behind_a = 0;  // of num_only_a, behind the last message of the other log
   std::int64_t num_behind_b = 0;
   std::optional<FirstDifference> first;
 };
@@ -131,7 +131,7 @@ class ChannelComparison {
     std::size_t next = 0;
   };
 
-  // Of events larger than one read.
+  // Compares the rest of events that are larger than one read.
   std::optional<Difference> CompareRests(const bus::LogEvent& a, const bus::LogEvent& b) const {
     if (a.num_data_bytes != b.num_data_bytes) return Difference{"size", std::to_string(a.num_data_bytes), std::to_string(b.num_data_bytes)};
     constexpr std::size_t kPieceBytes = 1024UL * 1024;
@@ -157,8 +157,8 @@ class ChannelComparison {
            header_a->seq == header_b->seq;
   }
 
-  // Of messages left in one log when the other has come to its end: those not before the other's last one (parts of a scan have one time). Where the
-  // pairs were not found, or the other log has none at all, nobody knows.
+  // How many messages that are left in one log, when the other has come to its end, are not earlier than the other's last message (parts of a scan
+  // have one time). 0 where this is not known, as pairs were not found or the other log has no message.
   std::int64_t NumBehind(Side& side, const Side& other) const {
     if (side.NumLeft() == 0 || num_in_vain_ > 0 || other.places == nullptr) return 0;
     const auto first = bus::ReadHeader(side.Read(0).bytes);

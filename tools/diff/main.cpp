@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   app.footer("Exit code: 0 equal; 1 different; 2 a log cannot be read, or wrong command line.");
   try {
     app.parse(argc, argv);
-    // Those of every channel first: they hold on each channel that has its own as well.
+    // Tolerances for every channel first: they also hold on channels that have their own.
     for (const bool has_channel : {false, true}) {
       for (const auto& tolerance : tolerances) {
         if ((tolerance.find(':') < tolerance.find('=')) == has_channel) diff::AddTolerance(tolerance, request);

@@ -133,7 +133,8 @@ void ReadCaptures(const std::vector<std::filesystem::path>& files, Observations&
   if (service) {
     service->Finish(now);
     drain();
-    // What a reader refuses for longer than a second is a complaint; where scans came the end of the capture is no silence.
+    // Packets that the decoder refuses for longer than 1 s are a complaint, so time goes on behind the capture. Where scans came the end of the
+    // capture is no silence.
     constexpr std::chrono::seconds kSilence(2);
     if (seen.lidar.model.empty()) service->AdvanceTo(now + kSilence);
     seen.lidar.complaint = service->Report().reason;

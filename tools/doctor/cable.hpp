@@ -13,13 +13,13 @@
 namespace lookout::doctor {
 
 /// Listens beside the ports of the config: with CAP_NET_RAW on each interface but loopback, also to what is sent to other addresses; without it on
-/// the ports to which lidars send as delivered, those that are free.
+/// those ports, of the ports to which lidars send as delivered, that are free.
 class Cable {
  public:
   /// @param ports_in_use  the ports of lidar.txtpb: somebody else hears them
   explicit Cable(const std::vector<int>& ports_in_use);
 
-  /// Passes on what waits.
+  /// Passes on the waiting datagrams.
   void Poll(Utime now, const std::function<void(const io::Source::Piece&)>& take);
   void Poll(Utime now, lidar::Survey& survey);
 

@@ -73,7 +73,7 @@ Findings CheckNavigation(const Observations& seen);
 /// The places of lidar and antenna and the direction of the lidar, so that a person on the boat sees a wrong sign.
 Findings CheckMounting(const ConfigSeen& config);
 
-/// Whether the mounting is the one of boat.txtpb, by what stands around the boat. Nothing where nobody asked.
+/// Whether the mounting is the one of boat.txtpb, by the standing things around the boat. No finding where nobody asked.
 Findings CheckMountingSeen(const Observations& seen);
 
 /// Whether the lidar can look into all of the guard zone, by the config, and does, by the scans.
@@ -84,15 +84,15 @@ Findings CheckDisk(const DiskSeen& disk);
 
 /// HEALTH of each process; obstacles; whether there is a look-out, and its alerts.
 Findings CheckProcesses(const Observations& seen);
-/// Of each output of the plotter: whether those to whom it sends take it, and whether an autopilot is heard.
+/// For each output of the plotter: whether its receivers accept its messages, and whether an autopilot is heard.
 Findings CheckPlotter(const Observations& seen);
-/// Whether AIS is heard where ais.txtpb expects it, and understood. Nothing where neither is.
+/// Whether AIS is heard where ais.txtpb expects it, and understood. No finding where AIS is neither expected nor heard.
 Findings CheckAis(const Observations& seen);
 
 /// Who sees the page, whether it has its port, its token, its map and room for the last minutes.
 Findings CheckPage(const Observations& seen);
 
-/// Of captures: which lidars speak in them, and what the config makes of them.
+/// For captures: which lidars send in them, and what the config makes of their packets.
 Findings CheckCaptures(const Observations& seen);
 
 /// All of the above but the last, in the order in which one depends on the other.

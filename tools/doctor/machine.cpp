@@ -332,7 +332,7 @@ PageSeen ReadPage(const ConfigSeen& config) {
   const auto& params = *config.page;
   seen.is_port_taken = IsTaken(params.bind_address, params.port);
   std::error_code error;
-  // The one in the state folder is that of the process's user: another one is looked at in vain.
+  // A token file in the state folder belongs to the user of the page's process: for another user no file is found here.
   if (params.allows_acknowledgements && fs::exists(params.token_file, error)) seen.token_fault = FaultOf([&] { page::ReadToken(params.token_file); });
   if (!params.map_file.empty()) seen.map_fault = FaultOf([&] { const page::Tiles tiles(params.map_file); });
   if (!params.spool_folder.empty()) {

@@ -49,7 +49,7 @@ bool IsHostClockSet();
 /// Needs of the page: its port, its token's file, its map, room.
 PageSeen ReadPage(const ConfigSeen& config);
 
-/// Of the log folder; the rate stays as it is in `seen`. A recorder that runs shows where a relative folder is.
+/// The disk of the log folder; the rate stays as it is in `seen`. A recorder that runs shows where a relative folder is.
 DiskSeen ReadDisk(const Observations& seen);
 
 }  // namespace lookout::doctor

@@ -76,7 +76,7 @@ Options ParseOptions(int argc, char** argv) {
   return options;
 }
 
-// Of a recording.
+// Observes the mounting in a recording.
 doctor::Observations ObserveMounting(const Options& options) {
   doctor::Observations seen;
   const auto recording = lookout::calibrate::ReadRecording(options.config_folder, options.captures, {});

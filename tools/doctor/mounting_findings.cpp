@@ -1,4 +1,4 @@
-// Whether the lidar points where boat.txtpb says, by what stands around the boat.
+// Whether the lidar points where boat.txtpb says, by the standing things around the boat.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,10 +14,10 @@ namespace {
 
 constexpr const char* kBumpSubject = "mounting";
 
-// Less is no bump: a boat is measured to about this. And a bump is so many deviations off, those of the reference among them.
+// A smaller turn is no bump: a boat is measured to about this. A bump also exceeds this many deviations, the reference's included.
 constexpr double kLeastBumpDeg = 1.0;
 constexpr double kLeastBumpSds = 4.0;
-// An axis of which no smaller bump would be told is not known.
+// An axis counts as not known where only a greater bump than this would be told.
 constexpr double kMostToldDeg = 10.0;
 
 struct AxisWords {

@@ -17,12 +17,12 @@ namespace lookout::doctor {
 class MountingWatch {
  public:
   explicit MountingWatch(const navigator::Params& params);
-  MountingWatch(const MountingWatch&) = delete;  // its members refer to each other
+  MountingWatch(const MountingWatch&) = delete;  // the members refer to each other
   MountingWatch& operator=(const MountingWatch&) = delete;
 
   void ListenTo(bus::Bus& bus);
 
-  /// Of the first 300 s.
+  /// The recording of the first 300 s.
   const calibrate::Recording& recording() const { return recording_; }
 
  private:
@@ -35,7 +35,7 @@ class MountingWatch {
 /// Takes some 8 s of one core for each minute.
 MountingSeen CompareMounting(const calibrate::Recording& recording, const calibrate::CalibrationParams& params);
 
-/// What a calibration says, as an observation. Pure.
+/// The result of a calibration as an observation. Pure.
 MountingSeen MountingOf(const calibrate::Calibration& calibration, const calibrate::PoseTrack& track);
 
 }  // namespace lookout::doctor

@@ -186,7 +186,8 @@ Findings CheckAutopilots(const Observations& seen) {
   return findings;
 }
 
-// Those that the config names one by one: "udp" is open on many boats that have nothing there. One that cannot be opened is told already.
+// Finds silent inputs among those that the config names. "udp" does not count: it is open on many boats that send nothing there. An input that cannot
+// be opened is told elsewhere.
 Findings CheckSilence(const Observations& seen) {
   Findings findings;
   for (const auto& connection : seen.config.navigation->connections) {

@@ -30,17 +30,17 @@ namespace lookout::doctor {
 
 /// The boat's config, as far as it is right.
 struct ConfigSeen {
-  std::map<std::string, std::vector<std::string>> files;  // by name, without the folder: lines "path:line: field: reason"; none = it is right
+  std::map<std::string, std::vector<std::string>> files;  // by name, without the folder: lines "path:line: field: reason"; none = the file is right
   std::optional<config::BoatFacts> boat;
   std::optional<lidar::Params> lidar;
-  std::string lidar_place = "lidar.txtpb";  // where its values stand, or belong, for people
-  std::optional<lidar::Params> lidar_2;     // nullopt: there is none, or its file is wrong
+  std::string lidar_place = "lidar.txtpb";  // file where the lidar's values stand, or belong, for people
+  std::optional<lidar::Params> lidar_2;     // nullopt: no second lidar, or its file is wrong
   std::optional<navigator::Params> navigation;
   std::optional<tracker::Params> tracker;
   std::optional<odometer::Params> odometer;
   std::optional<std::filesystem::path> log_folder;  // as the recorder's config says: may be relative
-  std::int64_t log_reserve_bytes = 0;               // which the recorder leaves free
-  bool has_plotter_outputs = true;                  // without one lookout-plotter need not run
+  std::int64_t log_reserve_bytes = 0;               // bytes of the disk that the recorder leaves free
+  bool has_plotter_outputs = true;                  // without outputs lookout-plotter need not run
   std::optional<page::Params> page;
 };
 
@@ -49,8 +49,8 @@ struct BusSeen {
   std::string url;
   std::string group;  // empty: no multicast
   int time_to_live = 0;
-  std::string route_device;  // by which the group goes; empty = not known
-  std::string fault;         // why it could not be opened
+  std::string route_device;  // device by which datagrams to the group leave; empty = not known
+  std::string fault;         // why the bus could not be opened
   int port = 7667;
 };
 
@@ -73,7 +73,7 @@ struct InterfaceSeen {
   std::string name;
   std::optional<io::IpAddress> address;
   int prefix_bits = 0;       // of `address` in its own family
-  bool has_carrier = false;  // it is up, and something answers at the other end of the cable
+  bool has_carrier = false;  // the interface is up, and a device is at the other end of the cable
   bool is_loopback = false;
 };
 
@@ -88,7 +88,7 @@ enum class Via {
 struct AzimuthSeen {
   std::int64_t num_shots = 0;
   std::int64_t num_returns = 0;
-  std::int64_t num_own = 0;  // of these, within own_vessel
+  std::int64_t num_own = 0;  // returns within own_vessel
 };
 
 struct LidarSeen {
@@ -100,7 +100,7 @@ struct LidarSeen {
   std::int64_t num_packets = 0;  // data packets, and the receiver's times of the first and the last
   Utime first{};
   Utime last{};
-  Utime heard_last{};   // by this computer's clock, which may not be the one of `last`
+  Utime heard_last{};   // by this computer's clock; `last` may be by another clock
   std::string model;    // of the last scan; empty = no scan
   int num_returns = 0;  // per shot
   int return_kind = 0;  // lidar_scan_t::RETURN_..., of the first
@@ -112,7 +112,7 @@ struct LidarSeen {
   std::array<AzimuthSeen, 360> azimuths{};  // by whole degree, of all scans
 };
 
-/// What one input of the navigator told.
+/// The messages of one input of the navigator.
 struct InputSeen {
   std::int64_t num_places = 0;  // measured or not
   std::int64_t num_fixes = 0;   // measured
@@ -125,9 +125,9 @@ struct NavigationSeen {
   std::string complaint;                                          // as in LidarSeen
   std::map<std::string, std::int64_t> num_by_source;              // sentences and IMU samples
   std::map<std::string, InputSeen> told_by_source;
-  std::optional<gnss_fix_t> fix;      // the last; of one epoch the one that says most
+  std::optional<gnss_fix_t> fix;      // the last fix; of one epoch the fix that says most
   Utime fix_heard{};                  // by this computer's clock
-  std::optional<attitude_t> heading;  // the last that holds one
+  std::optional<attitude_t> heading;  // the last attitude that holds a heading
   std::optional<pose_t> pose;         // the last
 };
 
@@ -149,38 +149,38 @@ struct ObstaclesSeen {
 /// TRACKS and ALERTS that were heard.
 struct LookOutSeen {
   std::int64_t num_scans = 0;
-  std::int64_t num_tracks = 0;  // confirmed and coasting ones of the last scan
-  std::int64_t num_moving = 0;  // of them
+  std::int64_t num_tracks = 0;  // confirmed and coasting tracks of the last scan
+  std::int64_t num_moving = 0;  // tracks of num_tracks that move
   Utime tracks_heard{};         // the last
   std::optional<alerts_t> alerts;
   Utime alerts_heard{};
 };
 
-/// What the lidar says of its own mounting: what stands keeps its place while the boat moves only with the right one.
+/// The mounting by the lidar's own scans: only with the right mounting do standing things keep their place while the boat moves.
 struct MountingSeen {
-  /// Of one axis of the vessel.
+  /// Turn of the mounting about one axis of the vessel.
   struct Axis {
     double turned_rad = 0.0;        // from the mounting of boat.txtpb to the one that was found
     double sd_rad = 0.0;            // its deviation
-    double reference_sd_rad = 0.0;  // that of the heading, or of the roll or pitch, against which it was found
+    double reference_sd_rad = 0.0;  // deviation of the heading, or of the roll or pitch, against which the turn was found
   };
   double watched_s = 0.0;
   std::string not_known;             // why nothing is told, in words; empty where the axes count
   std::vector<std::string> missing;  // motions that would help, in words
-  std::string turned_in_words;       // by right angles; empty where it is not
+  std::string turned_in_words;       // how the lidar is turned by right angles; empty where it is not
   std::array<Axis, 3> axes{};        // forward, port, up
 };
 
 /// Needs of the page on this computer, as far as this user may look.
 struct PageSeen {
   bool is_port_taken = false;    // by anybody; ours while the page runs here
-  std::string token_fault;       // empty: it is right, or will be made
-  std::string map_fault;         // empty: it is right, or there is none
+  std::string token_fault;       // empty: the token file is right, or will be made
+  std::string map_fault;         // empty: the map is right, or there is none
   std::int64_t free_bytes = -1;  // beyond the reserve, where the last minutes are kept; -1 = not known
 };
 
 struct DiskSeen {
-  std::string other_host;        // where the recorder runs, when that is not here: its disk cannot be seen from here
+  std::string other_host;        // host where the recorder runs, if not this one: its disk cannot be seen from here
   std::filesystem::path folder;  // absolute; empty = not known
   bool is_guessed = false;       // relative in the config, and the recorder does not run: taken from where the doctor was started
   bool is_writable = true;
@@ -194,7 +194,7 @@ struct Observations {
   BuffersSeen buffers;
   PortSeen port;
   std::vector<InterfaceSeen> interfaces;
-  bool is_host_clock_set = false;  // the kernel says that something (NTP, PPS) steers it
+  bool is_host_clock_set = false;  // the kernel says that something (NTP, PPS) steers the clock
   LidarSeen lidar;
   NavigationSeen navigation;
   std::map<std::string, std::vector<ProcessSeen>> processes;  // by name

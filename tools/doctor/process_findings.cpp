@@ -26,7 +26,7 @@ constexpr double kLookOutSilenceS = 1.0;
 
 bool IsAlive(const ProcessSeen& process, Utime end) { return ToSeconds(end - process.heard_last) <= kHealthSilenceS; }
 
-// Of any process; of the recorder.
+// Counter messages_not_sent is of any process, raw_missing of the recorder.
 bool IsLoss(const health_counter_t& counter) { return counter.name == "messages_not_sent" || counter.name == "raw_missing"; }
 
 std::int64_t NumLost(const health_t& health) {
@@ -78,7 +78,7 @@ Finding Missing(const std::string& name, bool was_heard) {
 Findings CheckObstacles(const Observations& seen) {
   const auto& obstacles = seen.obstacles;
   if (obstacles.num_scans == 0) {
-    if (seen.lidar.via != Via::kBus || seen.lidar.num_packets == 0) return {};  // nothing to make them of
+    if (seen.lidar.via != Via::kBus || seen.lidar.num_packets == 0) return {};  // no packets, so no OBSTACLES can come
     return {Fault(kObstaclesSubject, "the lidar runs, but no OBSTACLES come", "the processes' lines above")};
   }
   const std::string words = Fixed(static_cast<double>(obstacles.num_scans) / seen.watched_s, 1) + " scans/s, " +
@@ -100,7 +100,7 @@ Findings CheckLookOut(const Observations& seen) {
   const auto& look_out = seen.look_out;
   const std::string cure = "the process and lidar lines above; keep a look-out by eye meanwhile";
   if (!look_out.alerts && look_out.num_scans == 0) {
-    if (seen.obstacles.num_scans == 0) return {};  // nothing to make it of
+    if (seen.obstacles.num_scans == 0) return {};  // no OBSTACLES, so no TRACKS can come
     return {Fault(kLookOutSubject, "no look-out: OBSTACLES come, but no TRACKS and ALERTS: nothing will warn you", cure)};
   }
   const double alerts_age_s = ToSeconds(seen.end - look_out.alerts_heard);

@@ -49,7 +49,7 @@ std::string SpeakerText(const lidar::Speaker& speaker) {
   return text + ": " + Count(speaker.num_packets, "packet") + " of " + std::to_string(speaker.size_bytes) + " bytes";
 }
 
-// What is read does not fit what the metadata file says; nullopt where it does, or where the sensor itself is asked.
+// A finding where the packets do not fit the metadata file; nullopt where they do, or where the sensor itself is asked.
 std::optional<Finding> CheckMetadata(const lidar::Speaker& speaker, const lidar::Params& config) {
   if (config.other->beam_text.empty()) return std::nullopt;
   const auto metadata = lidar::ParseOusterMetadata(config.other->beam_text);

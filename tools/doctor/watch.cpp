@@ -95,7 +95,7 @@ class OwnLidar {
   std::vector<std::unique_ptr<io::Source>> sources_;
 };
 
-// The same for lookout-navigator. Text logs are not played.
+// Stands in for lookout-navigator, as OwnLidar does for lookout-lidar. Text logs are not played.
 class OwnNavigator {
  public:
   /// @param seen  gets the inputs that cannot be opened

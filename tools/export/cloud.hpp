@@ -1,4 +1,5 @@
-// Clouds of returns in files of others: of one scan, of a part of a log, or of all of it; in the frame of the lidar, of the vessel or of the earth.
+// Clouds of returns in file formats of other programs: of one scan, of a part of a log, or of a whole log; in the frame of the lidar, of the vessel
+// or of the earth.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +21,7 @@ enum class CloudFrame : std::uint8_t { kLidar, kVessel, kEarth };
 std::string_view NameOf(CloudFrame frame);
 
 struct CloudPoint {
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();  // in the frame, metres; of a writer that is geodetic longitude, latitude (deg) and height (m)
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  // in the frame, metres; for a geodetic writer longitude, latitude (deg) and height (m)
   int reflectivity = 0;
   std::optional<int> label = {};  // 0: in no segment; nullopt: not known
   int ring = 0;
@@ -43,7 +44,7 @@ class CloudWriter {
   /// Appends a point. @return false where it is farther off than the format can tell
   virtual bool Add(const CloudPoint& point, std::string& text) = 0;
 
-  /// Of all points so far; always of the same length.
+  /// The head for all points so far; always of equal length.
   virtual std::string Head() const = 0;
 
   virtual std::int64_t num_points() const = 0;

@@ -95,7 +95,7 @@ class CloudSink final : public Sink {
   void WriteFirst(std::string& text) {
     if (!has_begun_) {
       has_begun_ = true;
-      text += writer_->Head();  // Head() takes its place at the end
+      text += writer_->Head();  // the final Head() replaces it at the end
     }
     Write(waiting_.front(), text);
     waiting_.pop_front();

@@ -1,4 +1,4 @@
-// Colours of segments and of returns in none: the same for the same id, in every picture.
+// Colours of segments, and of returns in no segment: one id has one colour in every picture.
 #pragma once
 
 #include <cstdint>

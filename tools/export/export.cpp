@@ -71,8 +71,8 @@ std::vector<std::filesystem::path> InOrderOfTime(std::vector<std::filesystem::pa
   return inputs;
 }
 
-// By how much, beyond what can be, events were logged later than they were measured: of a log that was recorded while an old one was played. By the
-// first message of the table.
+// How much later events were logged than measured, where this is more than a live bus explains: the log was recorded while an old log was played.
+// The first message of the table decides.
 std::chrono::microseconds AgeOfMessages(const std::vector<std::filesystem::path>& inputs, const std::string& channel) {
   constexpr std::chrono::minutes kUsual(1);
   for (const auto& input : inputs) {

@@ -29,8 +29,8 @@ struct Feature {
   std::string what;  // "track", "outline", ...: one word for all of a sort
   std::string name;  // for people
   Geometry geometry;
-  std::optional<std::int64_t> utime_us = std::nullopt;      // when it was so; a line with times may have none
-  std::optional<std::int64_t> end_utime_us = std::nullopt;  // and until when
+  std::optional<std::int64_t> utime_us = std::nullopt;      // time of the feature; a line with times may have none
+  std::optional<std::int64_t> end_utime_us = std::nullopt;  // end of the feature, where it lasts
   std::vector<Property> properties = {};
 };
 

@@ -10,7 +10,7 @@ namespace lookout::exporter {
 
 namespace {
 
-// "[a,b,...]" of what `append` makes of each.
+// Appends "[a,b,...]", where `append` writes each element.
 template <typename Range, typename AppendOne>
 void AppendList(const Range& range, std::string& json, const AppendOne& append) {
   json += '[';

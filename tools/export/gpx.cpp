@@ -46,7 +46,7 @@ class GpxWriter final : public MapWriter {
     }
     if (feature.geometry.kind != Geometry::Kind::kPoint) return false;
     fmt::format_to(std::back_inserter(text), "<wpt {}>", Attributes(feature.geometry.parts.front().front()));
-    // Of what lasts, the end: where it is, is its place then.
+    // A feature that lasts gets the time of its end, as its place is that of the end.
     const auto utime_us = feature.end_utime_us ? feature.end_utime_us : feature.utime_us;
     if (utime_us) fmt::format_to(std::back_inserter(text), "<time>{}</time>", IsoTime(*utime_us));
     fmt::format_to(std::back_inserter(text), "<name>{}</name><desc>{}</desc><type>{}</type></wpt>\n", XmlText(feature.name),

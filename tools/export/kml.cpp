@@ -27,9 +27,9 @@ constexpr std::array kKmlStyles{KmlStyle{"own_track", "ffb27200", 3, "00000000",
                                 KmlStyle{"way", "ff739e00", 2, "00000000", 0.0},       KmlStyle{"waterline", "ff7aa0b8", 3, "00000000", 0.0},
                                 KmlStyle{"alert", "ff0000c0", 2, "00000000", 0.8}};
 
-// The fields of each sort of feature of a table with their types, so that numbers are read as numbers. Only those of the table: GDAL gives every
-// feature the fields of all schemas. Times in microseconds are whole numbers beyond 32 bits, which a double holds exactly: KML has no longer whole
-// number.
+// The fields of each sort of feature of a table with their types, so that numbers are read as numbers. Only fields of the table are declared: GDAL
+// gives every feature the fields of all schemas. Times in microseconds are whole numbers beyond 32 bits, which a double holds exactly: KML has no
+// longer whole number.
 struct KmlField {
   std::string_view type;
   std::string_view name;

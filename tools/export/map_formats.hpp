@@ -11,7 +11,7 @@
 namespace lookout::exporter {
 
 /// OGC KML 2.3 (12-007r2) with Google's gx:Track: a placemark for each feature, with its time, so that the slider of Google Earth shows one scan
-/// after the other; the style is that of `what`.
+/// after the other; the style follows `what`.
 /// @param table  "obstacles", "tracks" or "pose": its fields have types
 std::unique_ptr<MapWriter> MakeKmlWriter(std::string_view table);
 

@@ -34,13 +34,13 @@ struct Walked {
   // A stretch between two crossings of the 180th meridian; all on one side of it.
   struct Stretch {
     Places places;
-    std::vector<double> at;  // each place along the line: its index, between two places a fraction
+    std::vector<double> at;  // position of each place along the line: an index, with a fraction between two places
   };
   struct Crossing {
-    std::int64_t side = 0;  // longitude at which the stretch before it ends; the next one begins at minus that
+    std::int64_t side = 0;  // longitude at which the stretch before ends; the next stretch begins at minus this longitude
     std::int64_t latitude = 0;
   };
-  std::vector<Stretch> stretches;  // one more than crossings
+  std::vector<Stretch> stretches;  // one stretch more than crossings
   std::vector<Crossing> crossings;
 };
 

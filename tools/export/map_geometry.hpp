@@ -34,7 +34,7 @@ struct Geometry {
   // kPoint: one place. kPoints: one part of any number. kLine: parts of two places or more. kPolygon: parts are rings, closed (the last place is the
   // first), counter-clockwise, without holes.
   std::vector<std::vector<MapPlace>> parts;
-  // Of a line with times: one for each place. Else empty.
+  // Times of a line, one for each place; empty for other shapes and lines without times.
   std::vector<std::vector<std::int64_t>> utimes_us;
 
   bool HasTimes() const { return !utimes_us.empty(); }
@@ -46,15 +46,16 @@ Geometry PointAt(const MapPlace& place);
 Geometry PointsAt(std::span<const MapPlace> places);
 
 /// @param places     one or more; between two of them the line takes the shorter way round the earth
-/// @param utimes_us  when the line was at each of them; empty: it has no times. Where it is cut the time is between those of its neighbours.
+/// @param utimes_us  when the line was at each place; empty: the line has no times. A place where the line is cut gets a time between those of its
+///         neighbours.
 /// @return a point where all places are one and there are no times, or one place only
 Geometry LineAlong(std::span<const MapPlace> places, std::span<const std::int64_t> utimes_us = {});
 
-/// Several lines as one geometry; those of a single place are left out.
+/// Several lines as one geometry; lines of a single place are left out.
 Geometry LinesAlong(std::span<const std::vector<MapPlace>> lines);
 
-/// @param corners  one or more, in either direction, closed or open; the line between them does not cross itself. One that goes round a pole holds
-/// it.
+/// @param corners  one or more, in either direction, closed or open; the line between them does not cross itself. An outline that goes round a pole
+/// contains the pole.
 /// @return a line or a point where no area is left
 Geometry PolygonAround(std::span<const MapPlace> corners);
 
@@ -75,10 +76,10 @@ class MapOfDatum {
 
   /// The corners of an outline, with more of them along its sides where it lies so near to a pole that meridians fan out.
   std::vector<MapPlace> Outline(std::span<const Eigen::Vector2d> corners_map_m) const;
-  /// The same of an open line.
+  /// The places of an open line, with more of them as in Outline.
   std::vector<MapPlace> Line(std::span<const Eigen::Vector2d> corners_map_m) const;
 
-  /// Where the true place is with a probability of 95 %, of a normal distribution: 36 corners.
+  /// The ellipse that holds the true place with a probability of 95 %, by a normal distribution: 36 corners.
   ///
   /// @param covariance_m2  east-east, east-north, north-north
   /// @return empty where the covariance is none (not finite, not positive), or its longer half axis exceeds 100 km
@@ -100,7 +101,7 @@ class Near {
 
   bool Holds(const MapPlace& place) const;
 
-  /// Whether a part of it, or of the area inside of it, is within the radius.
+  /// Whether a part of the geometry, or of the area inside it, is within the radius.
   bool Holds(const Geometry& geometry) const;
 
  private:

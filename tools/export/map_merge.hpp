@@ -1,4 +1,4 @@
-// One map out of what many processes of the tracker saw stand.
+// One map out of the standing things that many processes of the tracker saw.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@
 
 namespace lookout::exporter {
 
-/// Processes in the order of time. A finished process is joined to the map: its things and those of the map are one where they lie within SamePlaceM
-/// and are of about one length, nearest pairs first; two things of one process never are. A day's scans are the sum of those of its processes. Land
-/// is merged cell by cell, on the grid of the earth.
+/// Processes in the order of time. A finished process is merged into the map: a thing of the process and a thing of the map are one where they lie
+/// within SamePlaceM and have about the same length, nearest pairs first; two things of one process never are. The scans of a day are summed over its
+/// processes. Land is merged cell by cell, on the grid of the earth.
 class MapMerge {
  public:
   /// @param begin  the scan at which the process of the tracker began
@@ -27,9 +27,10 @@ class MapMerge {
   /// Middles of the cells of land that TRACKS told after a scan. A cell that was told for 10 s of a day is land.
   void AddLand(Utime time, const Datum& datum, std::span<const Eigen::Vector2d> middles_m);
 
-  /// Once: things from south to north, and land by tile. Beyond the bounds of own_map.hpp the longest unseen are left out.
+  /// To be called once. Things from south to north, and land by tile. Beyond the bounds of own_map.hpp the things and tiles that were unseen for
+  /// longest are left out.
   OwnMap Merged();
-  /// Of Merged.
+  /// Numbers of things and cells that Merged left out.
   std::int64_t num_things_left_out() const { return num_things_left_out_; }
   std::int64_t num_cells_left_out() const { return num_cells_left_out_; }
   std::int64_t num_over_limit() const { return num_over_limit_; }
@@ -55,7 +56,7 @@ class MapMerge {
   std::map<tracker::ScanKey, Process> processes_;  // by the scan at which they began
   std::map<std::int64_t, MapThing> things_;        // by number
   std::int64_t next_number_ = 1;
-  std::vector<std::pair<Datum, std::map<Cell, ToldCell>>> land_;  // by the map frame in which it was told
+  std::vector<std::pair<Datum, std::map<Cell, ToldCell>>> land_;  // by the map frame in which the land was told
   std::int64_t num_things_left_out_ = 0;
   std::int64_t num_cells_left_out_ = 0;
   std::int64_t num_over_limit_ = 0;

@@ -108,7 +108,7 @@ Taken MapReader::TakePose(Bytes bytes) {
   const auto pose = messages::ToPose(*message);
   if (std::holds_alternative<messages::Fault>(pose)) return Taken::kInconsistent;
   const auto* const newest = poses_.newest();
-  if (newest != nullptr && std::get<Pose>(pose).time == newest->time) return Taken::kOk;  // it came twice
+  if (newest != nullptr && std::get<Pose>(pose).time == newest->time) return Taken::kOk;  // the same POSE came twice
   if (newest != nullptr && std::get<Pose>(pose).time < newest->time) poses_.Clear();
   poses_.Add(std::get<Pose>(pose));
   Release(kMostWaitingScans);

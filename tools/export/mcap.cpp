@@ -27,7 +27,7 @@ namespace {
 constexpr std::string_view kMcapProgram = "lookout-export: ";
 constexpr std::size_t kMaxMcapChannels = 60'000;
 
-// The text of a type, then those of its parts: as lcm-gen wants them, one after the other.
+// The text of a type, then the texts of the types in it, one after the other as lcm-gen expects them.
 std::string LcmText(const std::string& type) {
   std::vector<std::string> wanted{type};
   std::string text;

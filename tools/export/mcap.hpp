@@ -14,8 +14,8 @@ inline constexpr const char* kMcapFormat = "mcap";
 
 /// Uses inputs, output, force and progress of the request alone.
 ///
-/// Channels with the names of the log hold its messages as they are (message encoding x-lcm; the schema is the text of the .lcm file with those of
-/// its parts): lookout-import makes the same log of them, numbered from 0. Channels with a slash in front hold Foxglove's messages in Protobuf. Files
+/// Channels with the names of the log hold its messages as they are (message encoding x-lcm; the schema is the text of the .lcm file and of the types
+/// in it): from these lookout-import makes the same log, numbered from 0. Channels with a slash in front hold Foxglove's messages in Protobuf. Files
 /// of the first RUN_INFO are attachments. The same log gives the same bytes.
 ///
 /// @return exit code

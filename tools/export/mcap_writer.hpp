@@ -15,7 +15,7 @@ struct ZSTD_CCtx_s;
 
 namespace lookout::exporter {
 
-/// The same calls give the same bytes.
+/// Writes an MCAP file. Equal calls give equal bytes.
 class McapWriter {
  public:
   using Take = std::function<void(Bytes)>;

@@ -17,8 +17,8 @@ namespace lookout::exporter {
 /// A piece as it goes into a round.
 struct MergingPiece {
   std::int32_t num_returns = 0;
-  Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();  // of its returns, x and y in the lidar frame
-  std::int32_t becomes = 0;                          // its number in the next round; after the last one, that of its group
+  Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();  // mean of its returns, x and y in the lidar frame
+  std::int32_t becomes = 0;                          // the piece's number in the next round; after the last round, the number of its group
   std::int32_t segment_id = 0;                       // in SEGMENTS; 0 = in none
 };
 
@@ -26,11 +26,11 @@ struct MergingPair {
   std::int32_t one = 0;  // indices of pieces
   std::int32_t other = 0;
   std::array<float, segmenter::kNumPairFeatures> features{};
-  float log_odds = 0.0F;  // that they are one
+  float log_odds = 0.0F;  // log odds that the two pieces are one
 };
 
 struct MergeRound {
-  double threshold = 0.0;  // groups are merged while the mean log odds of the pairs between them are above it
+  double threshold = 0.0;  // groups are merged while the mean log odds of the pairs between them exceed the threshold
   std::vector<MergingPiece> pieces;
   std::vector<std::int32_t> piece_of_return;
   std::vector<MergingPair> pairs;  // that were judged
@@ -40,7 +40,7 @@ struct MergeRound {
 };
 
 struct MergedScan {
-  std::vector<Eigen::Vector3d> returns_m;  // that were looked at, lidar frame
+  std::vector<Eigen::Vector3d> returns_m;  // returns that the segmenter used, lidar frame
   std::array<MergeRound, segmenter::kNumMerges> rounds;
   std::map<std::int32_t, segments_t> segments;  // SEGMENTS, by part_index
   std::map<std::int32_t, segmenter::PieceFeatures> features_of_segment;
@@ -54,10 +54,10 @@ class MergeRecorder {
 
   /// @return nullopt where a part of LIDAR_SCAN is missing, or the segmenter would refuse it
   std::optional<MergedScan> Merge(const ScanMessages& messages);
-  /// The same of a scan that was asked for. @throws std::runtime_error where there is nothing to return
+  /// Merge of a scan that the user asked for. @throws std::runtime_error where there is nothing to return
   MergedScan MergeChosen(const ScanMessages& messages);
 
-  /// The sum of a round, of segmenter::kLandSum or of kThingSum.
+  /// The evidence of a round, segmenter::kLandSum or kThingSum.
   const segmenter::Evidence& evidence(std::size_t sum) const { return params_.lookout.evidence[sum]; }
 
  private:
@@ -77,7 +77,7 @@ struct MergeLink {
   std::string why;
 };
 
-/// Why pieces are one or two, and segments land or a thing, in words, with what adds most for and against.
+/// Why pieces are one or two, and segments land or a thing, in words, with the features that add most for and against.
 struct MergeReasons {
   std::vector<MergeLink> links;
   std::map<std::int32_t, std::string> why_of_segment;

@@ -10,7 +10,7 @@ namespace {
 // No boat gets so far from its datum in a run; further out the curve of the earth is not followed any more.
 constexpr double kFarthestM = 1e6;
 
-// Not so of what is not a number.
+// False for NaN, too.
 bool IsWithinReach(const Eigen::Vector2d& place_m) { return std::abs(place_m.x()) < kFarthestM && std::abs(place_m.y()) < kFarthestM; }
 
 template <typename Message>

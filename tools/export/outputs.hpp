@@ -30,11 +30,11 @@ struct Output {
   unsigned options;  // bits of Option
   /// @throws config::ConfigError
   std::unique_ptr<Sink> (*make)(const Request& request);
-  bool is_by_time = false;                                  // reads its logs in the order of their times, not as they are given
+  bool is_by_time = false;                                  // reads the logs in the order of their times, not in the order given
   std::string_view when_empty = "the input holds no scan";  // the missing part of the log where the output is empty
 };
 
-/// All rows: of a table those of its formats, csv first.
+/// All rows: for each table a row per format, csv first.
 const std::vector<Output>& Outputs();
 
 /// @return nullptr where the table is not written in that format

@@ -18,10 +18,10 @@ namespace lookout::exporter {
 inline constexpr std::size_t kMostMapThings = 4000;
 inline constexpr std::size_t kMostMapTiles = 40'000;
 inline constexpr std::size_t kMostMapCells = 400'000;
-inline constexpr std::size_t kMostMapDays = 100;  // of a thing or a tile: the newest
+inline constexpr std::size_t kMostMapDays = 100;  // most days of a thing or a tile: the newest are kept
 inline constexpr std::int32_t kMostDayScans = 10'000'000;
 
-/// On so many days a thing was seen that is called known.
+/// A thing that was seen on this many days counts as known.
 inline constexpr int kKnownDays = 3;
 
 /// Days since 1970-01-01 UTC.
@@ -46,9 +46,9 @@ struct MapThing {
   double top_above_water_m = 0.0;
   Utime first;
   Utime seen;
-  std::optional<Utime> gone;               // its place was found empty, and it was not seen since
+  std::optional<Utime> gone;               // the thing's place was found empty, and the thing was not seen since
   std::vector<DayScans> days;              // rising
-  std::vector<Eigen::Vector2d> outline_m;  // from its centre, along the axes of the map frame in which it was measured; at least one corner
+  std::vector<Eigen::Vector2d> outline_m;  // from the thing's centre, along the axes of the map frame in which it was measured; at least one corner
 };
 
 /// A square of 32 x 32 cells.
@@ -76,7 +76,7 @@ struct OwnMap {
 
 /// Adds a day to rising days, and forgets the oldest beyond kMostMapDays.
 void AddDay(std::int32_t day, std::vector<std::int32_t>& days);
-/// The same, with a number of scans that are added to those of the day.
+/// AddDay with a number of scans, which are added to the scans of that day.
 void AddScans(DayScans scans, std::vector<DayScans>& days);
 
 /// The grid of the land that many days share: cells of 0.50 to 0.51 m, 220 800 to a degree of latitude from the south pole up. Each row of tiles has

@@ -53,10 +53,10 @@ struct Outline {
   int id = 0;
   bool is_tentative = false;
   bool is_line = false;           // open, not filled
-  double distance_m = 0.0;        // of its nearest point
+  double distance_m = 0.0;        // of the nearest point
   std::string facts;              // stands in the legend
-  std::vector<Vector2d> corners;  // one or two are drawn as a point or a line
-  std::string why;                // said where the pointer rests on it
+  std::vector<Vector2d> corners;  // one corner is drawn as a point, two as a line
+  std::string why;                // shown where the pointer rests on the outline
 
   bool IsFinite() const {
     return !corners.empty() && std::ranges::all_of(corners, [](const Vector2d& corner) { return corner.allFinite(); });
@@ -307,7 +307,7 @@ Vector2d SeenFromAbove(const Vector2d& point_m, double heading_rad) {
   return {point_m.x() * sine - point_m.y() * cosine, point_m.x() * cosine + point_m.y() * sine};
 }
 
-// Both lists of coordinates are of the same corners.
+// Precondition: both lists of coordinates belong to the same corners.
 template <typename ToPicture>
 std::vector<Vector2d> Corners(const std::vector<float>& x_m, const std::vector<float>& y_m, ToPicture to_picture) {
   std::vector<Vector2d> corners;
@@ -318,7 +318,7 @@ std::vector<Vector2d> Corners(const std::vector<float>& x_m, const std::vector<f
 // " 43 %"; "" where it is not stated.
 std::string PercentOf(float probability) { return std::isfinite(probability) ? fmt::format(" {:.0f} %", 100.0 * double{probability}) : ""; }
 
-// Of a segment or an obstacle. Land is drawn as its waterline: the hull of a shore covers the water before it, and the boat.
+// The outline of a segment or an obstacle. Land is drawn as its waterline: the hull of a shore covers the water before it, and the boat.
 template <typename Thing>
 Outline OutlineOf(const Thing& thing, double distance_m, const std::string& place, std::vector<Vector2d> hull, std::vector<Vector2d> waterline) {
   const bool is_tentative = thing.confidence == segment_t::CONFIDENCE_TENTATIVE;
@@ -332,10 +332,10 @@ Outline OutlineOf(const Thing& thing, double distance_m, const std::string& plac
           ""};
 }
 
-// Of POSE at the time of the scan.
+// Heading by POSE at the time of the scan.
 struct SeenHeading {
   double heading_rad = 0.0;
-  bool is_course = false;  // over ground: there is no compass
+  bool is_course = false;  // course over ground: there is no compass
 };
 
 std::string NorthText(const SeenHeading& heading) {
@@ -425,7 +425,7 @@ Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<config:
 class ScanSvgSink final : public Sink {
  public:
   ScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq) : what_(what), scan_(what, seq) {}
-  // Of the returns, segmented again.
+  // Draws the returns, segmented again.
   ScanSvgSink(const segmenter::Params& params, const config::BoatFacts& boat, std::optional<std::int64_t> seq)
       : what_(ChosenScan::Of::kReturns), scan_(what_, seq), boat_(boat), recorder_(params) {}
 
@@ -463,7 +463,7 @@ class ScanSvgSink final : public Sink {
     const auto pose = bus::Decode<pose_t>(bytes);
     if (!pose) return Taken::kUndecodable;
     if (!UtimeFromWire(pose->utime_us)) return Taken::kInconsistent;
-    // Poses that come long after the scan must not replace those of its time.
+    // Poses that come long after the scan must not replace poses of the scan's time.
     constexpr std::int64_t kSpanUs = 10'000'000;
     const auto scan_utime_us = scan_.utime_us();
     if (scan_utime_us == 0 || std::abs(pose->utime_us - scan_utime_us) <= kSpanUs) {

@@ -7,8 +7,8 @@
 
 namespace lookout::exporter {
 
-/// The same output of the second lidar. Its mounting (`lidar_2` of boat.txtpb in RUN_INFO) takes the place of the first's. TRACKS do not reach it:
-/// they name the segments of the first.
+/// Makes a sink of the first lidar one of the second. The second's mounting (`lidar_2` of boat.txtpb in RUN_INFO) replaces the first's. TRACKS do not
+/// reach the sink: they name segments of the first lidar.
 std::unique_ptr<Sink> OfSecondLidar(std::unique_ptr<Sink> sink);
 
 }  // namespace lookout::exporter

@@ -26,17 +26,18 @@ std::optional<Circle> ParseCircle(std::string_view text);
 /// So many bytes of a message of any type of the bus hold its time: LCM begins with eight bytes that tell the type, then come the members.
 inline constexpr std::size_t kTimeEndBytes = 16;
 
-/// @return the time with which a message of any type of the bus begins (of what belongs to a scan: its first shot); nullopt where it is too short
+/// @return the time with which a message of any type of the bus begins (of a message of a scan: the scan's first shot); nullopt where the message is
+///         too short
 std::optional<std::int64_t> UtimeUsOf(Bytes message);
 
 /// Times of measurement, half open.
 struct Span {
   std::optional<std::int64_t> from_us = std::nullopt;
-  std::optional<std::int64_t> to_us = std::nullopt;  // the first that is not in it
+  std::optional<std::int64_t> to_us = std::nullopt;  // the first time that is left out
 
   bool IsAll() const { return !from_us && !to_us; }
 
-  /// @param message  of any type of the bus. One that is too short to have a time is held, so that it is counted as undecodable.
+  /// @param message  of any type of the bus. A message that is too short to have a time is held, so that it is counted as undecodable.
   bool Holds(Bytes message) const;
 };
 

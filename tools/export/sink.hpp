@@ -13,7 +13,7 @@ namespace lookout::exporter {
 enum class Taken {
   kOk,
   kUndecodable,   // not a whole message of the channel's type
-  kInconsistent,  // decoded, but its own counts or times contradict each other
+  kInconsistent,  // the message was decoded, but its counts or times contradict each other
 };
 
 class Sink {

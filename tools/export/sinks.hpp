@@ -36,7 +36,7 @@ std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> seq);
 /// Finish throws std::runtime_error where no return has a place in the frame; Take where the mounting is not known.
 std::unique_ptr<Sink> MakeCloudSink(std::unique_ptr<CloudWriter> writer, CloudFrame frame, std::optional<std::int64_t> seq, bool is_of_one_scan);
 
-/// One scan from above, 1320 x 1000 pixels: its returns with their segments, or its obstacles. The same text for the same log.
+/// One scan from above, 1320 x 1000 pixels: its returns with their segments, or its obstacles. Equal logs give equal text.
 std::unique_ptr<Sink> MakeScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq);
 
 /// The pairs of pieces that were judged in each round of merging when a scan is segmented again, with the part of each feature.

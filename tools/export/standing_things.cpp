@@ -12,11 +12,11 @@ namespace lookout::exporter {
 
 namespace {
 
-constexpr double kStandsForS = 10.0;  // until it is a thing of the map
+constexpr double kStandsForS = 10.0;  // how long a track stands until it is a thing of the map
 constexpr double kMostMapThingM = 1000.0;
-constexpr double kMostPlaceVarianceM2 = 100.0;  // of a place that is worth to be kept
+constexpr double kMostPlaceVarianceM2 = 100.0;  // greatest variance of a place that is kept
 constexpr std::size_t kMostMapOutline = 64;
-// A thing that is looked through: of one second, and of all until it is gone.
+// A place where a thing was is looked through: bounds for one second, and for all looks until the thing is gone.
 constexpr double kLeastBeams = 3.0;
 constexpr double kMostMetShare = 0.1;
 constexpr int kLooksUntilGone = 20;
@@ -44,7 +44,7 @@ bool HasNumbersOfAThing(const track_t& track) {
          are_near(track.outline_north_m, track.position_map_m[1]);
 }
 
-// Of a place, along its worst direction.
+// Deviation of a place, along its worst direction.
 double WorstDeviationM(const track_t& track) {
   const double half_trace = 0.5 * (track.covariance[0][0] + track.covariance[1][1]);
   const double half_difference = 0.5 * (track.covariance[0][0] - track.covariance[1][1]);
@@ -71,7 +71,7 @@ std::optional<StandingTrack> ToStandingTrack(const track_t& track) {
   look.top_above_water_m = track.top_above_water_m;
   look.first = *UtimeFromWire(track.first_utime_us);
   look.seen = *UtimeFromWire(track.seen_utime_us);
-  // Of more corners than a map has, each second, third ...: of a convex outline a little less.
+  // An outline with more corners than a map allows keeps each second, third, ... corner: a convex outline gets a little smaller.
   const auto step = (track.outline_east_m.size() + kMostMapOutline - 1) / kMostMapOutline;
   for (std::size_t i = 0; i < track.outline_east_m.size(); i += step) {
     look.outline_m.emplace_back(track.outline_east_m[i] - track.position_map_m[0], track.outline_north_m[i] - track.position_map_m[1]);
@@ -130,7 +130,7 @@ void StandingThings::NoteSeen(const StandingScan& scan) {
   }
 }
 
-// Of tracks that ended, move, or stand elsewhere by now.
+// Lets go things whose tracks ended, move, or stand elsewhere by now.
 void StandingThings::LetGo(const std::vector<StandingTrack>& tracks) {
   for (auto& thing : things_) thing.is_tracked = false;
   std::erase_if(thing_of_, [&](const auto& one) {

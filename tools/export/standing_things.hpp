@@ -21,10 +21,10 @@ struct StandingTrack {
   bool is_confirmed = true;
   bool is_seen = false;                                  // in this scan
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  // map
-  MapThing look;                                         // as it is known now
+  MapThing look;                                         // the thing, as it is known now
 };
 
-/// @return nullopt: it moves, is tentative or lost, or its place is not known to 10 m, or it holds what is no number of a thing
+/// @return nullopt: the track moves, is tentative or lost, its place is not known to 10 m, or one of its numbers is impossible
 std::optional<StandingTrack> ToStandingTrack(const track_t& track);
 
 /// TRACKS of one scan.
@@ -62,7 +62,7 @@ class StandingThings {
     Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
     std::vector<Eigen::Vector2d> outline_m;
     bool is_tracked = false;
-    int num_looks = 0;  // without it
+    int num_looks = 0;  // looks in which the thing was not there
     double num_beams = 0.0;
   };
 
@@ -74,7 +74,7 @@ class StandingThings {
   void Measure(const StandingScan& scan);
   void LookThrough(Utime now, const tracker::Sight& sight);
 
-  std::vector<Thing> things_;                     // those given first
+  std::vector<Thing> things_;                     // things that were given come first
   std::map<std::int64_t, std::size_t> thing_of_;  // by track
   std::optional<Datum> datum_;
   std::optional<std::int64_t> second_;  // in which tracks and things were compared last

@@ -41,9 +41,9 @@ Fixed GeodeticDegrees(double angle_deg) { return {angle_deg, 9}; }  // 0.1 mm on
 Fixed Degrees(double angle_rad) { return {RadToDeg(angle_rad), 4}; }
 Fixed Share(double share) { return {share, 4}; }  // or a probability
 
-// Of one scan, by number of the piece, else by id of the segment: the track, or 0 where it is remembered land.
+// Tracks of one scan, by number of the piece, else by id of the segment; 0 for remembered land.
 struct TracksOfScan {
-  std::map<std::int32_t, std::int64_t> of_piece;  // as TRACKS say; empty: they say nothing of pieces
+  std::map<std::int32_t, std::int64_t> of_piece;  // as in TRACKS; empty: TRACKS do not name pieces
   std::map<std::int32_t, std::int64_t> of_segment;
 
   std::optional<std::int64_t> Of(const messages::Return& one) const {
@@ -224,7 +224,7 @@ bool AppendMessage(Bytes bytes, const Near* /*near*/, std::string& text) {
   return true;
 }
 
-// The same of obstacles with a place.
+// Appends the rows of obstacles that have a place.
 template <typename Message>
 bool AppendPlaced(Bytes bytes, const Near* near, std::string& text) {
   const auto message = bus::Decode<Message>(bytes);
@@ -291,7 +291,7 @@ const std::array kTables{
           bus::kHealth, AppendMessage<health_t, AppendTraffic>},
     Table{"counters", "utime_us,process,name,count", bus::kHealth, AppendMessage<health_t, AppendCounters>},
     Table{"map", MapHeader(), bus::kTracks, nullptr},
-    Table{"merges", "", bus::kLidarScan, nullptr}};  // its header has the names of all features: MergesHeader
+    Table{"merges", "", bus::kLidarScan, nullptr}};  // the header has the names of all features: MergesHeader
 
 const Table* FindTable(std::string_view name) {
   const auto table = std::ranges::find(kTables, name, &Table::name);

@@ -23,7 +23,7 @@ namespace lookout::exporter {
 
 namespace {
 
-// Of a sphere that stands for the earth where only steps are measured.
+// A sphere stands for the earth where only steps are measured.
 constexpr double kMetresPerNanodeg = 111'195e-9;
 constexpr double kShortestStepM = 0.5;
 constexpr std::int64_t kLongestGapUs = 10'000'000;
@@ -350,7 +350,7 @@ class TrackMapSink final : public Sink {
   std::optional<PlaceAndTime> own_place_;                               // now
   std::optional<PlaceAndTime> scan_place_;                              // when TRACKS of the one scan came
   std::optional<std::int64_t> scan_utime_us_;                           // of the one scan
-  std::map<std::pair<std::int64_t, std::int64_t>, Followed> followed_;  // by the begin of the run, and id in it
+  std::map<std::pair<std::int64_t, std::int64_t>, Followed> followed_;  // by the begin of the tracker's process, and id of the track
   std::set<std::pair<std::int64_t, std::int64_t>> told_;                // id of an alert, and when it was raised
   std::vector<Warned> warned_;
   Waterline waterline_;

@@ -30,7 +30,7 @@ constexpr double kWidth = 1320.0;
 constexpr double kHeight = 1000.0;
 constexpr double kMargin = 60.0;
 constexpr double kLeastStepM = 0.2;
-// Of a track that does not move, so that noise does not fill the page.
+// Least extent that fills the page, so that noise of a standing track does not.
 constexpr double kLeastSpanM = 20.0;
 constexpr double kLandCellM = 0.5;
 constexpr const char* kLandColour = "#b8a07a";
@@ -86,8 +86,8 @@ std::string Number(std::size_t number, std::string_view noun) { return fmt::form
 
 // One track of the tracker, as long as it was confirmed.
 struct Followed {
-  std::vector<Eigen::Vector2d> places_m;   // of its centre
-  std::vector<Eigen::Vector2d> outline_m;  // when it was seen last
+  std::vector<Eigen::Vector2d> places_m;   // places of the centre
+  std::vector<Eigen::Vector2d> outline_m;  // outline when the track was seen last
   bool has_moved = false;
 };
 

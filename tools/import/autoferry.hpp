@@ -21,8 +21,8 @@ inline constexpr GeodeticPlace kAutoferryDatum{63.4389029083, 10.39908278, 0.0};
 
 // Values that the files do not hold.
 inline constexpr double kAutoferryDetectionSdM = 2.0;  // of a detection, along each axis: 2 m serve best in trackers that were tuned on these data
-inline constexpr double kAutoferryOwnSdM = 0.5;        // of the own position, drawn: of a receiver with corrections, and 0.1 s of the ferry's way
-inline constexpr int kAutoferryReturns = 5;            // of a detection, drawn: its clustering kept no single returns
+inline constexpr double kAutoferryOwnSdM = 0.5;        // of the own position, assumed: a receiver with corrections, and 0.1 s of the ferry's way
+inline constexpr int kAutoferryReturns = 5;            // of a detection, assumed: the data's clustering kept no single returns
 
 /// One scan of the lidar. Map frame at kAutoferryDatum: east, north.
 struct FerryScan {
@@ -50,8 +50,8 @@ bool IsFerryScans(const std::filesystem::path& file);
 /// A detection is a sure obstacle of one point, of status ok. In the vessel frame it stands as the course of the ferry has it (ToPoses).
 std::vector<obstacles_t> ToObstacles(const std::vector<FerryScan>& scans);
 
-/// The ferry every 20 ms, from a second before the first scan on: straight between scans, heading by the course over ground, which is not measured;
-/// at a stand the last course, at first that of the first metre.
+/// The ferry every 20 ms, from a second before the first scan on: straight between scans, heading by the course over ground, as heading is not
+/// measured; at a stand the last course, before the first way the course of the first metre.
 std::vector<pose_t> ToPoses(const std::vector<FerryScan>& scans);
 
 }  // namespace lookout::importer

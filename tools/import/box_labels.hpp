@@ -9,20 +9,20 @@
 
 namespace lookout::importer {
 
-/// In the frame of the cloud.
+/// A labelled box in the frame of the cloud.
 struct LabelledBox {
-  std::uint32_t label = 0;  // class in the lower, instance in the upper 16 bits: as SemanticKITTI has it
-  double x_m = 0.0;         // of its centre
+  std::uint32_t label = 0;  // class in the lower, instance in the upper 16 bits: as in SemanticKITTI
+  double x_m = 0.0;         // centre of the box
   double y_m = 0.0;
   double z_m = 0.0;
-  double half_width_m = 0.0;   // along x, before it is turned
+  double half_width_m = 0.0;   // along x, before the box is turned
   double half_length_m = 0.0;  // along y
   double half_height_m = 0.0;
   double cos_yaw = 1.0;  // about z
   double sin_yaw = 0.0;
 };
 
-/// Of a box's category; a category that is not known is kBoxOther.
+/// Classes of a box's category; an unknown category is kBoxOther.
 inline constexpr std::uint32_t kBoxShip = 1;
 inline constexpr std::uint32_t kBoxBuoy = 2;
 inline constexpr std::uint32_t kBoxOther = 3;

@@ -1,4 +1,4 @@
-// Bytes at places of a recording: of a file, or of memory in tests.
+// Reads bytes at any place of a recording: from a file, or from memory in tests.
 #pragma once
 
 #include <cstdint>

@@ -65,7 +65,7 @@ std::optional<double> FiringPeriodNs(const RingCloud& cloud) {
     has_last[ring] = true;
   }
   if (steps_ns.size() < 16) return std::nullopt;
-  // Of rings that miss returns the steps are of several firings.
+  // In rings that miss returns a step may span several firings, so a low quantile of the steps is the period.
   const auto quarter = steps_ns.begin() + static_cast<std::ptrdiff_t>(steps_ns.size() / 4);
   std::nth_element(steps_ns.begin(), quarter, steps_ns.end());
   const auto period_ns = static_cast<double>(*quarter);
@@ -199,8 +199,8 @@ void ByAzimuth(const RingCloud& cloud, CloudColumns& columns) {
   }
 }
 
-// The same as by time, with the azimuth as the clock: it turns unevenly, but a ring is always as far from another in azimuth, but for whole steps.
-// nullopt where the rings keep no phase, as bands do that stand for rings.
+// Offsets of the rings within a firing, with the azimuth as the clock. The head turns unevenly, but in azimuth a ring is always equally far from
+// another, except for whole steps. nullopt where the rings keep no phase, as with bands in place of rings.
 std::optional<PerRing<double>> FiringOffsetsRad(const RingCloud& cloud, const std::vector<double>& turned_rad, double step_rad) {
   PerRing<std::int64_t> num_of_ring{};
   for (const auto& point : cloud.points) ++num_of_ring[Index(point.ring)];
@@ -270,7 +270,8 @@ std::int64_t NumCollisions(const RingCloud& cloud, const CloudColumns& columns) 
   return num_collisions;
 }
 
-// By the times of the shots, unless these say less than the azimuths do: times that begin anew with each packet, or are those of packets.
+// Columns by the times of the shots, unless the times tell less than the azimuths: times that begin anew with each packet, or that are times of
+// packets.
 CloudColumns ByTimeOrAzimuth(const RingCloud& cloud) {
   constexpr std::int64_t kPartThatMayCollide = 100;
   CloudColumns by_time;
@@ -289,7 +290,7 @@ CloudColumns ByTimeOrAzimuth(const RingCloud& cloud) {
   return is_timed && num_timed <= num_best ? by_time : best;
 }
 
-// Means of what points say of columns and of rings, in turns, until they agree: value = column + ring.
+// Fits value = column + ring to the values of points: means over columns and over rings in turns, until they agree.
 class TwoWayMeans {
  public:
   TwoWayMeans(const RingCloud& cloud, const CloudColumns& columns)
@@ -301,8 +302,8 @@ class TwoWayMeans {
     }
   }
 
-  // @param difference    of what a point says to what is known: for angles the short way round
-  // @param least_change  of a ring: when none changes by more, they agree
+  // @param difference    of a point's value to the fitted value: for angles the short way round
+  // @param least_change  of a ring: when no ring changes by more, the means agree
   template <typename Difference>
   void Fit(std::vector<double>& first_guess, double least_change, const Difference& difference) {
     of_column_ = first_guess;

@@ -79,7 +79,7 @@ class PointTimes {
 
   bool is_absolute() const { return is_absolute_; }
 
-  // nullopt where the point has none. Half of what an int64_t holds at most, so that differences do not overflow.
+  // Time of a point; nullopt where it has none. At most half of what an int64_t holds, so that differences do not overflow.
   std::optional<std::int64_t> Of(Bytes point, bool is_big_endian) const {
     const auto time_ns = NsOf(point, is_big_endian);
     return time_ns && *time_ns >= -kMostTimeNs && *time_ns <= kMostTimeNs ? time_ns : std::nullopt;

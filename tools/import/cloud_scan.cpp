@@ -16,10 +16,10 @@ namespace lookout::importer {
 
 namespace {
 
-constexpr int kNumCloudBands = 64;  // of a sensor without rings
+constexpr int kNumCloudBands = 64;  // bands of a sensor without rings
 constexpr double kCloudRangeUnitM = 0.002;
 constexpr double kMaxCloudCount = std::numeric_limits<std::uint16_t>::max();
-// Of the points of a ring about its cone, as a part of their distance: more is no ring (0.6 degrees).
+// Greatest scatter of the points of a ring about its cone, as a share of their distance: more is no ring (0.6 degrees).
 constexpr double kMaxRingScatter = 0.01;
 constexpr double kMaxOriginM = 0.3;
 constexpr double kLongestScanNs = 2e9;
@@ -86,7 +86,7 @@ void CloudScans::AddElevations(const RingCloud& cloud) {
   }
 }
 
-// What is called a ring may be another count: lines of sensors that do not spin.
+// The field for rings may count something else: lines of sensors that do not spin.
 bool CloudScans::AreRingsScattered() const {
   int num_rings = 0;
   int num_scattered = 0;
@@ -130,7 +130,7 @@ std::int32_t CloudScans::BandOf(double elevation_rad) const {
   return static_cast<std::int32_t>(std::floor((elevation_rad - lowest_rad) / (highest_rad - lowest_rad) * kNumCloudBands));
 }
 
-// Of a sensor without rings bands of equal height stand for them.
+// In a cloud of a sensor without rings, bands of equal height stand for rings.
 void CloudScans::MendRings(RingCloud& cloud) {
   if (has_rings_) return;
   for (auto& point : cloud.points) point.ring = BandOf(Atan2(point.z_m, point.level_m));

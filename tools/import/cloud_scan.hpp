@@ -14,14 +14,14 @@
 
 namespace lookout::importer {
 
-/// What became of points; sums over all clouds.
+/// The fate of points; sums over all clouds.
 struct CloudCounts {
   std::int64_t num_points = 0;
   std::int64_t num_empty = 0;          // no return
   std::int64_t num_out_of_range = 0;   // RingCloud; or above or below the bands
   std::int64_t num_no_time = 0;        // RingCloud; of clouds whose times are used
   std::int64_t num_hidden = 0;         // another point of the same ring and firing is nearer: third returns, or the end of a turn over its begin
-  std::int64_t num_no_ring = 0;        // of a ring that is not known: fewer than kMinRingPoints so far
+  std::int64_t num_no_ring = 0;        // of an unknown ring: fewer than kMinRingPoints points so far
   std::int64_t num_refused = 0;        // clouds: no fields x y z, or more columns and rings than a scan may have
   std::int64_t num_times_refused = 0;  // clouds: RingCloud::are_times_refused
 };
@@ -46,7 +46,7 @@ class CloudScans {
   const std::vector<std::uint32_t>& cell_labels() const { return cell_labels_; }
 
   const CloudCounts& counts() const { return counts_; }
-  /// What the clouds lack or how they are read, in words, for people and RUN_INFO.
+  /// What is missing in the clouds, or how they are read, in words, for people and RUN_INFO.
   std::vector<std::string> Remarks() const;
 
  private:
@@ -60,7 +60,7 @@ class CloudScans {
     double origin_height_m = 0.0;
   };
 
-  // Of points of one elevation, but for a hundredth of a degree.
+  // Sums over points of one elevation, to 0.01 degrees.
   struct ElevationSums {
     double num = 0.0, level = 0.0, z = 0.0;
   };
@@ -91,7 +91,7 @@ class CloudScans {
   std::array<RingSums, kMaxImportRings> sums_{};
   std::vector<ElevationSums> elevations_;           // while learning: bands are cut when all that is learned is known
   std::array<double, 2> learned_rad_{kPi, -kPi};    // lowest and highest elevation
-  std::optional<std::array<double, 2>> bands_rad_;  // of a sensor without rings: where they begin and end
+  std::optional<std::array<double, 2>> bands_rad_;  // of a sensor without rings: lowest and highest elevation of the bands
   bool is_settled_ = false;
   std::int64_t next_seq_ = 0;
   CloudCounts counts_;

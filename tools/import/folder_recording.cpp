@@ -89,7 +89,7 @@ FolderRecording::FolderRecording(const fs::path& folder) : layout_(LayoutOf(fold
     topics_[kOxtsTopic] = {"oxts", std::string(kTypeOxts), Encoding::kText, 0};
     AddFrames(layout_.oxts, ".txt", true);
   }
-  // What has no time yet goes by its name, behind what has one.
+  // Frames without a time go by their names, behind frames with a time.
   std::ranges::stable_sort(frames_, [](const Frame& one, const Frame& other) {
     if (one.time_ns.has_value() != other.time_ns.has_value()) return one.time_ns.has_value();
     return one.time_ns.value_or(0) < other.time_ns.value_or(0);

@@ -43,7 +43,7 @@ Topics CountTopics(Recording& recording) {
   return topics;
 }
 
-// What is read of the files, one after the other, with what was lost of them.
+// Reads the files one after the other, and keeps what was lost of them.
 class RecordingReader {
  public:
   RecordingReader(const std::vector<fs::path>& files, std::ostream& notes)
@@ -151,7 +151,7 @@ void FinishTruth(const RecordingRequest& request, TruthFiles& truth, std::ostrea
 std::string FileNames(const std::vector<fs::path>& files) {
   std::string text;
   for (const auto& file : files) {
-    const auto plain = fs::absolute(file).lexically_normal();  // of a folder "x/" and "." the name, too
+    const auto plain = fs::absolute(file).lexically_normal();  // also gives the name of a folder "x/" or "."
     text += "imported from " + PrintableLines((plain.has_filename() ? plain : plain.parent_path()).filename().string()) + "\n";
   }
   return text;
@@ -166,7 +166,7 @@ std::string TallyText(const std::string& topic, const TopicTally& tally) {
   return text;
 }
 
-// What the log tells of its origin, and people of the import.
+// Lines about the import, for the log and for people.
 std::vector<std::string> ResultLines(const RosImport& import, const LogMaker& log) {
   std::vector<std::string> lines;
   for (const auto& [topic, tally] : import.tallies()) lines.push_back(TallyText(topic, tally));
@@ -239,7 +239,7 @@ bool ImportRecording(const RecordingRequest& request, log::LogOutput& output, st
     const auto kind = OpenKnown(request.files.front())->kind();
     throw std::runtime_error(request.files.front().string() + ": is a " + kind + " that holds nothing that is imported");
   }
-  // Once more at the end, with what came of it.
+  // RUN_INFO once more at the end, with the results of the import.
   for (const auto& line : lines) run_info.file_text.back() += line + "\n";
   write_run_info(*last);
   return is_whole && std::ranges::none_of(import.tallies(), [](const auto& tally) { return tally.second.num_refused > 0; });

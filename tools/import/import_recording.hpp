@@ -15,7 +15,7 @@ namespace lookout::importer {
 
 struct RecordingRequest {
   std::filesystem::path config_folder;
-  std::vector<std::filesystem::path> files;  // of one recording, in their order
+  std::vector<std::filesystem::path> files;  // files of one recording, in their order
   std::optional<std::filesystem::path> topic_map_file;
   std::optional<std::filesystem::path> truth_folder = std::nullopt;
   std::optional<std::filesystem::path> label_map_file = std::nullopt;

@@ -1,4 +1,4 @@
-// What the labels of a data set mean to the judge: read from a text file, or the default of the data set.
+// The meaning of a data set's labels for lookout-eval: read from a text file, or the default of the data set.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ enum class LabelUse { kNone, kWater, kLand, kObstacle };
 
 struct LabelMeaning {
   LabelUse use = LabelUse::kNone;
-  std::string name;  // "car"; without one "label 10"
+  std::string name;  // "car"; "label 10" for a label without a name
 };
 
-/// By class: the lower 16 bits of a label. What is not in it is of no object.
+/// By class, the lower 16 bits of a label. Points of a class that is not in the map belong to no object.
 using LabelMap = std::map<std::uint16_t, LabelMeaning>;
 
-/// As in semantic-kitti.yaml: of a road, whose surface stands where water would be.
+/// Map for the classes of semantic-kitti.yaml: of roads, whose surface counts as water.
 extern const std::string_view kSemanticKittiLabels;
-/// Of box_labels.hpp.
+/// Map for the classes of box_labels.hpp.
 extern const std::string_view kBoxLabels;
 
 /// Lines "CLASS water|land|obstacle|none [NAME]"; # begins a comment.

@@ -18,7 +18,7 @@ LogMaker::LogMaker(const lidar::Params& params, bool has_navigation, Write write
 
 void LogMaker::Add(Utime time, ImportItem item) {
   num_waiting_bytes_ += item.bytes.size() + item.sentence.size() + sizeof(ImportItem);
-  waiting_.emplace(time, std::move(item));  // of one time in the order in which they came
+  waiting_.emplace(time, std::move(item));  // at equal times in the order in which they came
   while (num_waiting_bytes_ > kMaxWaitingBytes) ReleaseUntil(waiting_.begin()->first);
 }
 

@@ -18,7 +18,7 @@
 
 namespace lookout::importer {
 
-/// What a recording holds of one instant.
+/// One item of a recording, at one time.
 struct ImportItem {
   enum class Kind { kPacket, kPositionPacket, kSentence, kImu, kScanPart };
   Kind kind = Kind::kPacket;
@@ -34,7 +34,7 @@ class LogMaker {
  public:
   static constexpr std::chrono::seconds kWait{2};
   static constexpr std::size_t kMaxWaitingBytes = std::size_t{24} << 20;
-  /// The recording's clock was set back by so much: what waits is not waited for any more.
+  /// The recording's clock was set back when its time falls by this much: waiting items are released.
   static constexpr std::chrono::seconds kSetBack{10};
 
   using Write = std::function<void(Utime time, const bus::Channel& channel, Bytes bytes)>;
@@ -44,7 +44,7 @@ class LogMaker {
 
   void Add(Utime time, ImportItem item);
 
-  /// What is recorded has come so far; to be said before what is recorded then is added.
+  /// The time of recording has come so far; to be called before items that were recorded then are added.
   void AdvanceTo(Utime recorded);
 
   /// End of the recording: the rest, and the end marks.

@@ -18,7 +18,7 @@ namespace {
 using std::string_view_literals::operator""sv;
 
 constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n"sv;
-constexpr std::size_t kMcapHeadBytes = 9;                                                    // of a record: opcode, length
+constexpr std::size_t kMcapHeadBytes = 9;                                                    // head of a record: opcode, length
 constexpr std::size_t kMostMcapChunkHeadBytes = kMcapHeadBytes + 8 + 8 + 8 + 4 + 4 + 4 + 8;  // with the longest name of a compression
 
 enum McapOp : std::uint8_t {
@@ -102,7 +102,7 @@ bool McapFile::NextRecord() {
   const auto content_at = position_ + kMcapHeadBytes;
   const bool is_cut = length > source_->size() - content_at;
   if (opcode == kMcapFooter || opcode == kMcapDataEnd) {
-    is_at_end_ = true;  // behind it stands what is known already
+    is_at_end_ = true;  // the records behind it repeat what is known already
     return false;
   }
   const bool is_used = opcode == kMcapSchema || opcode == kMcapChannel || opcode == kMcapMessage || opcode == kMcapChunk;

@@ -84,7 +84,7 @@ std::optional<OxtsItems> ParseOxts(std::string_view text, Utime time) {
   const auto add = [&items](std::string sentence) {
     if (!sentence.empty()) items.sentences.push_back(std::move(sentence));
   };
-  // Its accuracy first: it is that of the fixes behind it.
+  // The accuracy (GST) comes first, as it holds for the fixes behind it.
   add(GstOf(fix, time));
   add(GgaOf(fix, time));
   RosTwist twist;

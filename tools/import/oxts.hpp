@@ -12,7 +12,7 @@
 namespace lookout::importer {
 
 struct OxtsItems {
-  std::vector<std::string> sentences;                  // GST, GGA, VTG, PASHR: what the record has of them
+  std::vector<std::string> sentences;                  // GST, GGA, VTG and PASHR, as far as the record has their values
   std::optional<navigator::StrapdownSample> imu = {};  // to the axes of the boat
 };
 

@@ -228,7 +228,7 @@ double BinaryNumber(const PcdField& field, const char* bytes) {
 
 bool UnpackLzf(std::string_view packed, std::size_t size, std::string& unpacked) {
   constexpr std::size_t kLongestMatch = 264;  // of three bytes
-  constexpr std::size_t kLiteralEnd = 32;     // a control byte below it: as many literals and one
+  constexpr std::size_t kLiteralEnd = 32;     // a control byte n below this: n + 1 literals follow
   unpacked.clear();
   if (size > kLongestMatch * packed.size()) return false;
   unpacked.reserve(size);

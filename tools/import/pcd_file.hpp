@@ -60,7 +60,7 @@ class PcdReader {
   /// @throws PointFileError for a line of another number of columns, and where the file ends before the last point
   bool Next();
 
-  /// Of this point. @throws PointFileError for text that is no number
+  /// The number in a field of this point. @throws PointFileError for text that is no number
   double Number(const PcdField& field) const;
 
   /// @throws PointFileError with the place of this point

@@ -162,7 +162,8 @@ PcdColumns ColumnsOf(const PcdReader& reader) {
   return columns;
 }
 
-// Whole numbers count nanoseconds. Those that are too large for a double's digits as seconds stay what they are, which the cloud's reader knows.
+// Whole numbers count nanoseconds. Numbers beyond kLargestNs, whose digits a double of seconds would not hold, stay nanoseconds; the cloud's reader
+// knows these.
 double PointTimeOf(const PcdField& field, double value) {
   constexpr double kLargestNs = 1e14;
   const bool is_whole = field.type != PcdField::Type::kFloat;
@@ -170,7 +171,7 @@ double PointTimeOf(const PcdField& field, double value) {
 }
 
 std::int32_t RingNumber(double value) {
-  constexpr double kMost = 1e6;  // NaN and what is beyond it is no ring
+  constexpr double kMost = 1e6;  // NaN and numbers beyond this are no ring
   return value >= -1.0 && value <= kMost ? static_cast<std::int32_t>(value) : std::numeric_limits<std::int32_t>::max();
 }
 

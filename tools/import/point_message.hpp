@@ -18,7 +18,7 @@ struct PointMessage {
   std::string fault;  // why points of the file are lost, with the place; empty: none is
 };
 
-/// What stands beside a file of points about each of them.
+/// Labels beside a file of points.
 struct PointLabels {
   std::optional<std::string_view> of_points;  // bytes of a file of SemanticKITTI: class in the lower, instance in the upper 16 bits of each number
   std::optional<std::span<const LabelledBox>> boxes;

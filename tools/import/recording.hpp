@@ -29,7 +29,7 @@ struct Topic {
 using Topics = std::map<std::uint32_t, Topic>;
 
 struct RecordedMessage {
-  std::int64_t time_ns = 0;  // at which it was recorded, since 1970
+  std::int64_t time_ns = 0;  // when the message was recorded, since 1970
   const Topic* topic = nullptr;
   Bytes bytes;  // stand until the next call
 };
@@ -37,18 +37,18 @@ struct RecordedMessage {
 /// Whether a message may have been recorded at it, since 1970: what Utime accepts from outside.
 constexpr bool IsRecordedTime(std::int64_t time_ns) { return time_ns >= kMinUtimeUs * 1000 && time_ns <= kMaxUtimeUs * 1000; }
 
-/// What was lost of a recording.
+/// Losses of a recording.
 struct Losses {
   std::int64_t num_damaged = 0;        // stretches, chunks or records that could not be read
   std::int64_t num_bytes_skipped = 0;  // of the file, where another chunk was looked for, or a record is too large to be read
-  std::int64_t num_bad_messages = 0;   // of no topic that is known, or at an impossible time
-  std::int64_t num_foreign = 0;        // files of a folder that are not of its recording
+  std::int64_t num_bad_messages = 0;   // messages of an unknown topic, or at an impossible time
+  std::int64_t num_foreign = 0;        // files of a folder that do not belong to its recording
   bool is_cut = false;                 // the file ends before its end mark
   std::string first_fault;             // in words, with the place
 
   bool IsAny() const { return num_damaged > 0 || num_bad_messages > 0 || num_foreign > 0 || is_cut; }
   void Damage(std::uint64_t offset, const std::string& reason);
-  /// Of a folder. @param reason  with the file
+  /// Damage of a file of a folder. @param reason  names the file
   void DamageFile(const std::string& reason);
   void BadMessage(const std::string& reason);
 };
@@ -77,10 +77,10 @@ class Recording {
   /// How far it is read, 0 to 1.
   virtual double share() const = 0;
 
-  /// What it lacks or how it is read, in words, for people and RUN_INFO.
+  /// What is missing in the recording, or how it is read, in words, for people and RUN_INFO.
   virtual std::vector<std::string> remarks() const { return {}; }
 
-  /// What the labels of its points mean (ParseLabelMap); empty where it has none.
+  /// Meaning of the labels of the recording's points (ParseLabelMap); empty where it has no labels.
   virtual std::string_view default_labels() const { return {}; }
 };
 

@@ -199,7 +199,7 @@ void RosBag::FindNextChunk(const std::string& fault) {
   losses_.Damage(position_, fault);
   const auto begin = position_ + 1;
   for (auto from = begin; from < source_->size(); from = window_.end()) {
-    // What begins in this stretch is looked at as a whole.
+    // Chunks that begin in this stretch are read as a whole.
     const auto bytes = window_.From(*source_, from);
     const auto num_begins = static_cast<std::size_t>(window_.end() - from);
     for (auto next = bytes.begin();;) {

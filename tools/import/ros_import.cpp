@@ -21,7 +21,7 @@ bool IsNear(std::int64_t one_ns, std::int64_t other_ns) {
   return !__builtin_sub_overflow(one_ns, other_ns, &off_ns) && off_ns >= -kMaxStampOffNs && off_ns <= kMaxStampOffNs;
 }
 
-// Of a scan, which does not name its sensor.
+// Model of a cloud, which does not name its sensor.
 std::string ModelOf(const std::string& type) {
   if (type == kTypePcd) return "PCD";
   if (type.starts_with("livox")) return "Livox";
@@ -33,9 +33,9 @@ std::optional<RosPointCloud> CloudOf(const RecordedMessage& message) {
   return (is_livox ? ParseLivoxPoints : ParsePointCloud)(message.topic->encoding, message.bytes);
 }
 
-// rad/s and m/s2: what NAV_RAW takes.
+// rad/s and m/s2: the greatest value that NAV_RAW accepts.
 constexpr double kMaxImportImuValue = 1000.0;
-// Of a message: some hundred lines. Looking for sentences in it takes longer than reading it.
+// Longest text of a message: some hundred lines. Looking for sentences in a text takes longer than reading it.
 constexpr std::size_t kMaxSentenceText = std::size_t{64} << 10;
 
 }  // namespace
@@ -227,7 +227,7 @@ void RosImport::TakeFix(const RecordedMessage& message, TimeBasis basis, TopicTa
   if (!time_ns) return;
   const auto time = *UtimeOfNs(*time_ns);
   ++tally.num_used;
-  // Its accuracy first: it is that of the fixes behind it.
+  // The accuracy (GST) comes first, as it holds for the fixes behind it.
   if (auto accuracy = GstOf(*fix, time); !accuracy.empty()) AddSentence(time, message.topic->name, std::move(accuracy), tally);
   AddSentence(time, message.topic->name, GgaOf(*fix, time), tally);
 }

@@ -14,12 +14,12 @@
 
 namespace lookout::importer {
 
-/// What became of the messages of a topic.
+/// The fate of the messages of a topic.
 struct TopicTally {
   std::int64_t num_used = 0;
   std::int64_t num_refused = 0;     // not a message of the topic's type, or text of more than 64 KiB
-  std::int64_t num_empty = 0;       // without what is looked for: no sentence in the text, no finite number
-  std::int64_t num_lines_lost = 0;  // of texts: DatagramLines, all but those that may enter NAV_RAW
+  std::int64_t num_empty = 0;       // without usable content: no sentence in the text, no finite number
+  std::int64_t num_lines_lost = 0;  // lines of texts that may not enter NAV_RAW: see DatagramLines
   std::int64_t num_other_time = 0;  // the stamp was not used (TimeBasis::kAuto)
 };
 

@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::int64_t kRosNsPerS = 1'000'000'000;
 constexpr std::size_t kVelodynePacketBytes = 1206;
-constexpr std::size_t kPandarPacketBytes = 1500;  // the room of each, whatever its size is
+constexpr std::size_t kPandarPacketBytes = 1500;  // room of each packet, whatever its size is
 constexpr std::uint32_t kMaxRosFields = 256;
-constexpr std::uint32_t kMaxRosPackets = 20'000;  // of a scan: a Pandar64 has 12 000 in a second
+constexpr std::uint32_t kMaxRosPackets = 20'000;  // packets of a scan: a Pandar64 has 12 000 in a second
 
 // Reads values one after the other. ROS 1: little-endian, packed. CDR (XCDR1): of either order, each number at a multiple of its size from behind the
 // 4 bytes of encapsulation on, texts with their zero. Behind the first that is not there everything is 0, and Finish says so.
@@ -67,7 +67,7 @@ class RosReader {
 
   std::int64_t Stamp() {
     const auto seconds = U32();
-    // Of ROS 2 seconds have a sign; before 1970 nothing was recorded.
+    // In ROS 2 seconds have a sign; before 1970 nothing was recorded.
     return static_cast<std::int64_t>(is_cdr_ && seconds > INT32_MAX ? 0 : seconds) * kRosNsPerS + U32();
   }
 
@@ -103,7 +103,7 @@ class RosReader {
 };
 
 bool DoSizesAgree(const RosPointCloud& cloud) {
-  // Of no points, too, neither may have no end: rows are gone through.
+  // Height and width are bounded also in a cloud without points, as its rows are gone through.
   const auto num_points = std::max(std::uint64_t{cloud.height}, std::uint64_t{1}) * std::max(cloud.width, 1U);
   return num_points <= kMaxRosPoints && cloud.row_step >= std::uint64_t{cloud.width} * cloud.point_step &&
          cloud.data.size() >= std::uint64_t{cloud.row_step} * cloud.height;

@@ -74,14 +74,13 @@ struct RosPointCloud {
   std::uint32_t point_step = 0;
   std::uint32_t row_step = 0;
   Bytes data;
-  std::vector<std::uint8_t> made = {};  // what `data` views where the message does not hold it so
+  std::vector<std::uint8_t> made = {};  // bytes that `data` views where the message holds the points in another form
 };
 
 /// A cloud has at most as many points as a scan of LIDAR_SCAN has cells.
 inline constexpr std::uint64_t kMaxRosPoints = std::uint64_t{1} << 21;
 
-/// The words that Parse... know; of what is of another type they must not be asked.
-/// Packets of a lidar as they came.
+/// Types that the Parse... functions know; they must not be called for other types. Packets of a lidar as they came.
 inline constexpr std::string_view kTypeVelodyneScan = "velodyne_msgs/VelodyneScan";
 inline constexpr std::string_view kTypePandarScan = "pandar_msgs/PandarScan";
 inline constexpr std::string_view kTypeNebulaPackets = "nebula_msgs/NebulaPackets";
@@ -90,7 +89,7 @@ inline constexpr std::array<std::string_view, 3> kTypesOusterPacket{"ouster_sens
 inline constexpr std::string_view kTypePointCloud = "sensor_msgs/PointCloud2";
 /// Points of a Livox with their lines and times.
 inline constexpr std::array<std::string_view, 2> kTypesLivox{"livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg"};
-/// Of files, as sensor_msgs/PointCloud2 (point_message.hpp).
+/// Messages made of files, as sensor_msgs/PointCloud2 (point_message.hpp).
 inline constexpr std::string_view kTypePcd = "pcl/PCD";
 inline constexpr std::string_view kTypeKittiPoints = "kitti/Points";
 inline constexpr std::string_view kTypeOxts = "kitti/Oxts";
@@ -103,10 +102,10 @@ inline constexpr std::string_view kTypeTwistWithCovariance = "geometry_msgs/Twis
 inline constexpr std::string_view kTypeOdometry = "nav_msgs/Odometry";
 
 /// @return nullopt when the bytes are too few, too many, of a CDR that is not known, or contradict themselves. Views are into `bytes`.
-/// @param type  one of those of packets
+/// @param type  one of the types of packets
 std::optional<std::vector<RosPacket>> ParsePackets(Encoding encoding, std::string_view type, Bytes bytes);
 std::optional<RosPointCloud> ParsePointCloud(Encoding encoding, Bytes bytes);
-/// As a cloud that holds its points; it may be moved, and not copied.
+/// A cloud that owns its points: it may be moved, but not copied.
 std::optional<RosPointCloud> ParseLivoxPoints(Encoding encoding, Bytes bytes);
 std::optional<RosImu> ParseImu(Encoding encoding, Bytes bytes);
 std::optional<RosNavSatFix> ParseNavSatFix(Encoding encoding, Bytes bytes);

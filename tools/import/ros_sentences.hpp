@@ -1,4 +1,5 @@
-// Positions and velocities of ROS as the sentences of NMEA 0183 that a receiver would have sent. What the message does not say is an empty field.
+// Positions and velocities of ROS as the sentences of NMEA 0183 that a receiver would have sent. A value that the message does not hold is an empty
+// field.
 #pragma once
 
 #include <string>

@@ -22,7 +22,7 @@ class Rosbag2Database final : public Recording {
   /// @throws std::runtime_error when it cannot be opened, or is no recording of rosbag2
   explicit Rosbag2Database(const std::filesystem::path& file);
 
-  /// The same in memory, for tests.
+  /// A database in memory, for tests.
   explicit Rosbag2Database(std::vector<std::uint8_t> bytes);
 
   ~Rosbag2Database() override;
@@ -40,12 +40,12 @@ class Rosbag2Database final : public Recording {
   bool SkipDamage();
   std::optional<RecordedMessage> ToMessage();
 
-  std::vector<std::uint8_t> memory_;  // of the database, where it is in memory
+  std::vector<std::uint8_t> memory_;  // bytes of a database in memory
   sqlite3* database_ = nullptr;
   sqlite3_stmt* statement_ = nullptr;
   Topics topics_;
   Losses losses_;
-  std::int64_t last_id_ = std::numeric_limits<std::int64_t>::min();  // of what was read; numbers grow
+  std::int64_t last_id_ = std::numeric_limits<std::int64_t>::min();  // id of the last row that was read; ids grow
   std::int64_t first_id_ = 0;
   std::int64_t greatest_id_ = 0;
   std::vector<std::uint8_t> unpacked_;

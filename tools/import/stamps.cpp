@@ -147,7 +147,7 @@ std::optional<Stamp> StampOfName(std::string_view stem) {
   if (last == std::string_view::npos) return std::nullopt;
   const auto tail = stem.substr(last + 1);
   if (const auto stamp = dated(ParseStamp(tail))) {
-    // Of two numbers in a row the last is a fraction: it is looked at below.
+    // The last of two numbers in a row is a fraction of a second: see below.
     if (tail.size() != kFractionDigits) return stamp;
   }
   if (!AreDigits(tail) || tail.size() != kFractionDigits) return std::nullopt;

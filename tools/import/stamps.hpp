@@ -11,14 +11,14 @@
 namespace lookout::importer {
 
 struct Stamp {
-  std::int64_t time_ns = 0;  // since 1970 where it is dated
-  bool is_dated = true;      // else it counts from the begin of a recording
+  std::int64_t time_ns = 0;  // since 1970 where the stamp is dated
+  bool is_dated = true;      // else time_ns counts from the begin of a recording
   bool is_zoneless = false;  // a date and a time of day without a zone: taken for UTC
 };
 
-/// "2011-09-26 13:02:25.964389445" (also with T or _ between, and other separators), or a number: whole or with a fraction, also as 1.5e+09. What it
-/// counts a number says by its size: from 1e17 on nanoseconds, from 1e14 on microseconds, from 1e11 on milliseconds, else seconds; below 1e8 (1973)
-/// it is not dated. Digits are exact to the nanosecond, but for numbers with an exponent.
+/// "2011-09-26 13:02:25.964389445" (also with T or _ between, and other separators), or a number: whole or with a fraction, also as 1.5e+09. The size
+/// of a number tells its unit: from 1e17 on nanoseconds, from 1e14 on microseconds, from 1e11 on milliseconds, else seconds; below 1e8 (1973) it is
+/// not dated. Digits are exact to the nanosecond, but for numbers with an exponent.
 ///
 /// @return nullopt where it is none of these, or before 1970 or after 2100
 std::optional<Stamp> ParseStamp(std::string_view text);

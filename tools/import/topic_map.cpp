@@ -124,7 +124,7 @@ TopicMap GuessTopics(const Topics& topics) {
   if (has_sentences) return map;
   const auto* const fix = Best(by_name, Use::kFix, -5, {{"fix", 2}, {"gps", 1}, {"gnss", 1}, {"rtk", 1}, {"filter", -2}, {"odom", -2}, {"raw", -1}});
   if (!take(fix, Use::kFix)) return map;
-  // A velocity of the same receiver: beside its fix, or by its name. What moves a boat by command is none.
+  // A velocity of the same receiver: beside its fix, or by its name. A velocity that is a command does not count.
   std::map<std::string, Topic> beside;
   for (const auto& [name, topic] : by_name) {
     const int score = ScoreOf(name, {{"gps", 1}, {"gnss", 1}, {"fix", 1}, {"cmd", -9}, {"command", -9}, {"body", -9}, {"local", -9}, {"set", -9}});

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kFirstStepBytes = std::size_t{1} << 20;
 
-// What one call of a library did.
+// The result of one call of a library.
 struct Step {
   std::size_t num_used = 0;
   std::size_t num_made = 0;

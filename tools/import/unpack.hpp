@@ -17,11 +17,12 @@ inline constexpr std::size_t kMaxPieceBytes = std::size_t{64} << 20;
 
 struct Unpacked {
   std::vector<std::uint8_t> bytes;  // as far as could be unpacked
-  std::string fault;                // empty: all of it
+  std::string fault;                // empty: all bytes were unpacked
 };
 
 /// @param packed   a frame of LZ4 or of Zstandard, or a stream of bzip2; of kNone the bytes themselves
-/// @param num_said the size that the recording states: more is never made, and less is a fault. Memory grows with what is unpacked, not with it
+/// @param num_said the size that the recording states: more bytes are never made, and fewer are a fault. Memory grows with the unpacked bytes, not
+///         with this number
 Unpacked Unpack(Packing packing, Bytes packed, std::uint64_t num_said);
 
 /// Whether the bytes begin as a frame of Zstandard does.

@@ -25,7 +25,7 @@ struct SliceRequest {
   std::filesystem::path output;
   bool force = false;                 // an existing output is replaced
   std::string from;                   // as FindTime; empty = the start
-  std::string to;                     // the first time that is not in it; empty = the end
+  std::string to;                     // the first time that is left out; empty = the end
   std::vector<std::string> channels;  // empty = all
 };
 

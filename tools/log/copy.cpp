@@ -62,7 +62,7 @@ void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors,
   for (std::size_t i = 0; i < readers.size(); ++i) {
     auto& reader = readers[i];
     const auto& file = request.inputs[i];
-    if (i > 0) copier.NumberAnew();  // rotated logs become one, each with numbers from 0
+    if (i > 0) copier.NumberAnew();  // rotated logs, each with numbers from 0, become one log
     while (auto event = reader.Next()) {
       shown.Show(reader.position_bytes());
       const bool is_run_info = event->channel == bus::kRunInfo.name;

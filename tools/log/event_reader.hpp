@@ -67,7 +67,7 @@ class EventReader {
     return event;
   }
 
-  /// Of an event that is larger than bus::kMaxLogDataBytes: hands on what Next did not give, piece by piece.
+  /// Hands on, piece by piece, the bytes of an event beyond bus::kMaxLogDataBytes, which Next did not give.
   template <typename Take>
   void ReadRest(const bus::LogEvent& event, const Take& take) const {
     constexpr std::size_t kPieceBytes = 1024UL * 1024;

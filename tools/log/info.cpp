@@ -25,7 +25,7 @@ namespace lookout::log {
 
 namespace {
 
-// Of a channel or file more are counted, not named.
+// Types and stretches of a channel or file beyond these numbers are counted, not named.
 constexpr std::size_t kMaxTypesNamed = 3;
 constexpr std::size_t kMaxStretchesNamed = 10;
 

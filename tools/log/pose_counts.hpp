@@ -13,8 +13,8 @@ struct PoseCounts {
   std::int64_t num_placed = 0;  // position and heading are known on the earth
   std::int64_t num_without_heading = 0;
   std::int64_t num_without_position = 0;
-  std::int64_t num_relative = 0;   // in a frame of its own; counted as without position or heading, too
-  std::int64_t num_to_boat = 0;    // of these, without a known own motion
+  std::int64_t num_relative = 0;   // in a relative frame; also counted as without position or heading
+  std::int64_t num_to_boat = 0;    // relative poses without a known own motion
   std::int64_t num_by_course = 0;  // placed, and the heading is course over ground
   std::int64_t first_placed_us = 0;
   std::int64_t last_placed_us = 0;

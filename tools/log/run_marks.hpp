@@ -47,7 +47,7 @@ class RunMarks {
     return Where([](const Stream&) { return true; });
   }
 
-  /// Of these, those that do not begin with a start mark, and those that do not end with an end mark.
+  /// Channels of Channels() that do not begin with a start mark, and that do not end with an end mark.
   std::vector<std::string> WithoutStart() const {
     return Where([](const Stream& stream) { return !stream.begins_with_start; });
   }
@@ -55,7 +55,7 @@ class RunMarks {
     return Where([](const Stream& stream) { return !stream.ends_with_end; });
   }
 
-  /// Of these, those where a run without an end mark is followed by another one.
+  /// Channels of Channels() in which a run without an end mark is followed by another run.
   std::vector<std::string> CutInside() const {
     return Where([](const Stream& stream) { return stream.is_cut_inside; });
   }
@@ -75,7 +75,7 @@ class RunMarks {
     std::uint64_t fingerprint;
     std::int32_t start_mark;
     std::int32_t end_mark;
-    bool is_bit;  // marks are bits of a field; else its values
+    bool is_bit;  // marks are bits of a field; else they are its values
     std::optional<Utime> last = {};
     bool begins_with_start = false;
     bool ends_with_end = false;

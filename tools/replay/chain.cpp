@@ -64,7 +64,7 @@ struct Chain::Running {
   bus::ServiceRow row;
   StageBus bus;
   std::unique_ptr<Stage> stage;
-  std::chrono::nanoseconds time{0};  // without that of its handlers, which the bus measures
+  std::chrono::nanoseconds time{0};  // without the time of its handlers, which the bus measures
 };
 
 void CheckConfig(const std::filesystem::path& config_folder) {

@@ -165,7 +165,7 @@ class Feeder {
   OnePublisher one_publisher_;
   std::int64_t num_events_ = 0;     // of logs
   std::optional<Utime> last_time_;  // of an event
-  std::optional<Utime> before_;     // the same of the files before this one, until its first event
+  std::optional<Utime> before_;     // last_time_ of the file before, until the first event of this file
   InputSummary summary_;
 };
 

@@ -30,7 +30,7 @@ struct Inspection {
   Plan plan;
   bool is_logs = false;                           // else captures
   bool is_text_logs = false;                      // of the captures: nothing but text logs
-  std::optional<run_info_t> recorded;             // the first RUN_INFO of the logs, if they hold one before all that is looked for was found
+  std::optional<run_info_t> recorded;             // the first RUN_INFO of the logs, if it comes before the search ends
   std::vector<std::int64_t> sizes_bytes;          // of the files
   std::optional<std::chrono::sys_days> day = {};  // of the first time in each text log in which no sentence tells a date
 };

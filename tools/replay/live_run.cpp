@@ -48,8 +48,8 @@ struct Heard {
   std::size_t last;
 };
 
-// The processes of the run, each first and last heard later than the one before. An intruder, a second tracker, is one that is heard only between two
-// ALERTS of another process, or before one ended and still after the next began.
+// The processes of the run, each first and last heard later than the one before. An intruder is a second tracker: it is heard only between two ALERTS
+// of another process, or from before one process ended until after the next began.
 std::vector<Heard> ProcessesOfTheRun(const std::vector<Told>& log) {
   std::vector<Heard> heard;
   std::map<tracker::ScanKey, std::size_t> place_of;
@@ -71,7 +71,7 @@ std::vector<Heard> ProcessesOfTheRun(const std::vector<Told>& log) {
   return run;
 }
 
-// Of two processes that overlap, the one that goes on counts from its first ALERTS on, the other one until then.
+// Where two processes overlap, the later one counts from its first ALERTS on, the earlier one until then.
 std::vector<Told> WithoutIntruders(std::vector<Told> log) {
   std::vector<Told> rest;
   const auto run = ProcessesOfTheRun(log);

@@ -107,7 +107,7 @@ std::int64_t CountOf(Chain& chain, const lookout::bus::Channel& channel) {
   return entry == chain.digests().end() ? 0 : entry->second.count;
 }
 
-// RUN_INFO of the result: the config in force, and why its results may differ from those of the whole chain with the config of the input.
+// RUN_INFO of the result: the config in force, and why results may differ from those of the whole chain with the config of the input.
 lookout::run_info_t RunInfoOf(const Options& options, const lookout::replay::Inspection& inspection) {
   auto run_info = lookout::runtime::MakeRunInfo("replay", options.config_folder);
   std::string text = IsWhole(inspection.plan) ? "" : InWords(inspection.plan);
@@ -169,7 +169,7 @@ void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) 
 // The report at the end.
 struct Watched {
   lookout::log::PoseCounts poses;
-  std::map<std::string, std::int64_t, std::less<>> num_of_other_type;  // by channel, of those that are read and not computed
+  std::map<std::string, std::int64_t, std::less<>> num_of_other_type;  // by channel that is read and not computed
   std::int64_t num_sentences = 0;
 
   void Add(std::string_view channel, lookout::Bytes bytes) {
@@ -244,7 +244,8 @@ void Replay(const Options& options) {
   const double digest_s = lookout::ToSeconds(chain.digest_time());
   const double elapsed_s = lookout::ToSeconds(std::chrono::steady_clock::now() - start) - digest_s;
 
-  const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a scan; else the results count the scans
+  const bool has_clock =
+      chain.digests().contains(lookout::bus::kLidarClock.name);  // LIDAR_CLOCK comes once a scan; without it the results count the scans
   const auto num_scans = CountOf(chain, has_clock ? lookout::bus::kLidarClock : lookout::bus::kSegments);
   PrintSummary(summary, chain, num_scans);
   PrintInterleavings(summary.interleavings);
@@ -270,7 +271,7 @@ void Replay(const Options& options) {
   std::FILE* const out = output.IsStandardOutput() ? stderr : stdout;  // a log that goes there is not mixed with lines
   output.Commit();
   if (hashes) hashes->Commit();
-  PrintDigests(chain, out);  // last: the log is there, whether or not anybody reads these
+  PrintDigests(chain, out);  // last, so that the log is complete whether or not anybody reads the digests
 }
 
 // Memory that is returned to the system is requested again at the next scan: page faults took a tenth of the time.

@@ -32,7 +32,7 @@ void OnePublisher::Add(std::int64_t event, Utime time, const bus::Channel& chann
   waiting_.push_back({time, &channel, {bytes.begin(), bytes.end()}, state});
   num_bytes_ += bytes.size();
   while (num_bytes_ > kMaxBytes) {
-    auto& oldest = waiting_.front();  // is held, or it would not wait
+    auto& oldest = waiting_.front();  // the guard holds this message, or it would not wait
     oldest.state = State::kRefused;
     publishers_.guards().find(oldest.channel->name)->second.RefuseOldestHeld(now);
     HandOn();

@@ -14,8 +14,8 @@
 
 namespace lookout::replay {
 
-/// Where a channel has two publishers at a time the messages of the second are left out, as the live processes did; those of one that starts anew are
-/// handed on. Which of both it is, shows up to a second later: events wait for it, and none overtakes another.
+/// Where a channel has two publishers at a time the messages of the second are left out, as the live processes did; messages of a publisher that
+/// starts anew are handed on. Which of the two cases it is shows up to 1 s later: events wait until then, and none overtakes another.
 class OnePublisher {
  public:
   using Take = std::function<void(Utime time, const bus::Channel& channel, Bytes bytes)>;

@@ -41,9 +41,9 @@ class RequestError : public std::invalid_argument {
 /// The running services, and where the data begin. By default: all services, fed with the datagrams of captures.
 struct Plan {
   std::vector<std::string> services = ServiceNames();  // that run, in the order of the data
-  ServiceRows table = ReplayedServices();              // out of which they were chosen
+  ServiceRows table = ReplayedServices();              // out of which the services were chosen
   std::vector<std::string> read = {};                  // channels that come out of the logs, in the order of the channel table
-  std::vector<std::string> absent = {};                // of these, channels that the logs do not hold
+  std::vector<std::string> absent = {};                // channels of `read` that the logs do not hold
   std::optional<tracker::Script> script = {};          // actions of the live tracker, where the logs tell
   bool pose_by_lidar = true;                           // false: POSE without the lidar's motion and without the IMU in it
 
@@ -69,7 +69,7 @@ ChannelSet Candidates(const Request& request, const ServiceRows& services = Repl
 /// @throws RequestError as Candidates; std::runtime_error when the logs lack a channel of --from, the input of a service of --only, or every input
 Plan MakeLogPlan(const Request& request, const ChannelSet& present, const ServiceRows& services = ReplayedServices());
 
-/// The same for captures: services with a raw output read datagrams, and no message can be read.
+/// The plan for captures: services with a raw output read datagrams, and no message can be read.
 ///
 /// @throws RequestError also when --from is asked for, or a service of whose inputs none is published
 Plan MakeCapturePlan(const Request& request, const ServiceRows& services = ReplayedServices());

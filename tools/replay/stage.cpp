@@ -105,11 +105,11 @@ class NavigatorStage final : public Stage {
   }
   void OnTextLine(Utime time, Bytes line) override {
     ++num_measured_;
-    service_.OnDatagram(time, line);  // as if it had come by the input "udp"
+    service_.OnDatagram(time, line);  // as if the line had come by the input "udp"
   }
   void Finish(Utime time) override { service_.Finish(time); }
   std::int64_t FinishLogs(Utime time, bool is_whole) override {
-    if (!params_.reads_nav_raw && is_whole) service_.Finish(time);  // LIDAR_NMEA has no end mark: it sets its own
+    if (!params_.reads_nav_raw && is_whole) service_.Finish(time);  // LIDAR_NMEA has no end mark: the navigator sets its own
     return 0;
   }
   HealthReport Report() const override { return service_.Report(); }

@@ -60,7 +60,7 @@ class Stage {
 
 /// Facts that a stage is told beforehand.
 struct StageInput {
-  bool reads_raw = false;  // its input is the raw channel that it publishes live
+  bool reads_raw = false;  // the service's input is the raw channel that it publishes live
   const Plan& plan;
 };
 
@@ -72,7 +72,7 @@ struct StageFactory {
   std::unique_ptr<Stage> (*make)(bus::Bus& bus, const std::filesystem::path& config_folder, const StageInput& input);
 };
 
-/// Of every service that replay can run.
+/// Factories of all services that replay can run.
 const std::vector<StageFactory>& StageFactories();
 
 }  // namespace lookout::replay

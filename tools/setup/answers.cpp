@@ -17,7 +17,7 @@ constexpr double kBesideHullM = 0.2;       // fenders, and what hangs over the r
 constexpr double kBelowWaterM = 1.0;       // glints of the own hull
 constexpr double kAboveLidarM = 0.9;       // a mast or an antenna on top
 constexpr double kAroundLidarM = 0.2;      // a lidar on a boom beyond the hull
-constexpr double kOutsideM = 2.0;          // of a stern arch or a boom: lookout-doctor doubts more
+constexpr double kOutsideM = 2.0;          // for a stern arch or a boom: lookout-doctor doubts a greater distance
 constexpr double kLeastGuardZoneM = 10.0;  // as of config/catabot
 
 double Half(double length_m) { return length_m / 2.0; }
@@ -98,7 +98,7 @@ config::Answers LoadAnswers(const std::filesystem::path& file, const Heard& hear
   config::LoadText(file, answers);
   config::FaultList faults;
   for (const auto& fault : FaultsOf(answers, heard)) {
-    // Both places have the same names within: the line is that of the place.
+    // Both places have members of the same names: the line is the place's.
     const auto dot = fault.field.find('.');
     const auto member = dot == std::string::npos ? std::string() : fault.field.substr(dot + 1) + " ";
     faults.Add(config::FaultLine(file, fault.field.substr(0, dot), member + fault.reason));

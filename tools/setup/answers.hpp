@@ -1,4 +1,4 @@
-// What a person said of the boat, checked and in the frame of the vessel.
+// A person's answers about the boat, checked and in the frame of the vessel.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ struct AnswerFault {
   std::string reason;
 };
 
-/// What fields are wrong in against each other, the boat's size and what was heard; each by itself was checked before.
+/// Faults of fields that contradict each other, the boat's size, or the sensors that were heard; each field by itself was checked before.
 std::vector<AnswerFault> FaultsOf(const config::Answers& answers, const Heard& heard);
 
 /// Why a number must not be the value of this field, by the options of the schema; empty: it may.

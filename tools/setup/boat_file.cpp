@@ -21,7 +21,7 @@ std::string Quoted(const std::string& text) {
 
 std::string PlaceText(const Place& place) { return fmt::format("x_m: {} y_m: {} z_m: {}", place.x_m, place.y_m, place.z_m); }
 
-// Of MODEL_AUTO and the like; ports as delivered, as nothing was heard.
+// Lines for a lidar that was not heard: its model, and ports as delivered.
 std::string UnheardLidar(config::Lidar::Model model) {
   lidar::Speaker speaker;
   constexpr int kFirstOther = config::Lidar::MODEL_VLP32C;

@@ -7,7 +7,7 @@
 
 namespace lookout::setup {
 
-/// The text of boat.txtpb. The same for the same answers, lidars and sources of sentences, however long and fast they were heard.
+/// The text of boat.txtpb. Equal answers, lidars and sources of sentences give equal text, however long and fast they were heard.
 std::string BoatFile(const config::Answers& answers, const Heard& heard);
 
 }  // namespace lookout::setup

@@ -22,10 +22,10 @@ void CheckPlace(const std::filesystem::path& folder, bool force);
 /// boat is as it was, unless an old file beside a new boat could not be renamed; every process refuses the two together
 std::vector<std::filesystem::path> WriteBoat(const std::filesystem::path& folder, const std::string& text, bool force);
 
-/// Of a written boat: what lookout-doctor would doubt in its numbers, a line each.
+/// Doubts that lookout-doctor has about the numbers of a written boat, a line each.
 std::string DoubtsOf(const std::filesystem::path& folder);
 
-/// What to do next, and where the page is, for people.
+/// The next steps, and the address of the page, for people.
 std::string NextSteps(const std::filesystem::path& folder);
 
 }  // namespace lookout::setup

@@ -110,7 +110,8 @@ Heard Listen(std::chrono::milliseconds duration, const std::vector<std::filesyst
     io::ThrowIfStopAsked();
     const auto now = runtime::HostNow();
     cable.Poll(now, [&](const io::Source::Piece& piece) {
-      // What interfaces show comes to the sockets, too; loopback is not captured. What this computer sends is no sensor's.
+      // Datagrams that are captured on interfaces come to the sockets, too, so sockets count for loopback alone, which is not captured. Datagrams of
+      // this computer come from no sensor.
       const bool is_frame = !piece.destination_address.empty();
       const auto sender = io::ParseIpAddress(piece.source_address);
       if (is_frame && sender && std::ranges::find(own_addresses, sender, &doctor::InterfaceSeen::address) != own_addresses.end()) return;

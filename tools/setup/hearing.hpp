@@ -1,4 +1,4 @@
-// What the cables of a computer, or a recording, tell of a boat: lidars and NMEA 0183.
+// Sensors of a boat on the cables of a computer, or in a recording: lidars and NMEA 0183.
 #pragma once
 
 #include <chrono>
@@ -12,10 +12,10 @@
 namespace lookout::setup {
 
 struct Heard {
-  std::vector<lidar::Speaker> lidars = {};  // those whose packets are read
-  std::vector<std::string> unread = {};     // names of lidars that are not
+  std::vector<lidar::Speaker> lidars = {};  // lidars whose packets can be read
+  std::vector<std::string> unread = {};     // names of lidars whose packets cannot be read
   std::vector<NmeaHeard> nmea = {};
-  std::vector<std::string> faults = {};  // what could not be listened to, for people
+  std::vector<std::string> faults = {};  // sources that could not be opened, for people
   bool is_recording = false;
 };
 
@@ -25,7 +25,7 @@ Heard Listen(std::chrono::milliseconds duration, const std::vector<std::filesyst
 /// Captures (pcap, pcapng) read to their end. @throws std::runtime_error when one cannot be read
 Heard ReadRecordings(const std::vector<std::filesystem::path>& files);
 
-/// A line for each: which lidar, which sentences, how fast, and what lacks.
+/// A line for each lidar and source of sentences: model or types, rates, and what is missing.
 std::vector<std::string> InWords(const Heard& heard);
 
 }  // namespace lookout::setup

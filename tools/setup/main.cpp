@@ -1,4 +1,4 @@
-// lookout-setup: listens to what is on the cables, asks what is not, and writes a boat in one file.
+// lookout-setup: listens on the cables, asks for all else, and writes a boat in one file.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdlib>

@@ -86,7 +86,7 @@ std::vector<NmeaHeard> NmeaSurvey::Sources() const {
   std::vector<NmeaHeard> sources;
   if (!lidar_.heard.num_by_type.empty()) sources.push_back(lidar_.heard);
   auto by_port = by_socket_;
-  by_port.insert(by_frame_.begin(), by_frame_.end());  // a port that both heard is the socket's
+  by_port.insert(by_frame_.begin(), by_frame_.end());  // for a port that both heard the socket's counts are used
   sources.reserve(1 + by_port.size() + by_device_.size());
   for (const auto& [port, count] : by_port) sources.push_back(count.heard);
   for (const auto& [device, count] : by_device_) {

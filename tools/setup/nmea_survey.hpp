@@ -16,7 +16,7 @@ inline constexpr int kNmeaPort = 10110;  // UDP, registered for NMEA 0183
 
 /// A source of sentences with right checksums.
 struct NmeaHeard {
-  enum class Kind { kUdp, kSerial, kLidar };  // kLidar: in its position packets
+  enum class Kind { kUdp, kSerial, kLidar };  // kLidar: in the position packets of a lidar
   Kind kind = Kind::kUdp;
   int port = 0;                                          // kUdp
   std::string device = {};                               // kSerial
@@ -25,7 +25,7 @@ struct NmeaHeard {
   bool has_position = false;
   bool has_heading = false;
   bool has_tilt = false;
-  double seconds = 0.0;  // from its first to its last sentence
+  double seconds = 0.0;  // from the source's first to its last sentence
 };
 
 /// "RMC 1.0/s, HDT 10.0/s"; without a rate where it was heard for less than two seconds.
@@ -33,12 +33,12 @@ std::string SentencesInWords(const NmeaHeard& heard);
 
 class NmeaSurvey {
  public:
-  /// A datagram of any kind: what holds no sentence with a right checksum changes nothing. The first 32 ports are kept.
+  /// Any datagram: one without a sentence with a right checksum changes nothing. The first 32 ports are kept.
   ///
   /// @param is_frame  seen on an interface, not by a socket: the same datagram may come both ways, and counts once
   void AddDatagram(Utime time, int port, Bytes payload, bool is_frame);
 
-  /// Of a lidar's position packet.
+  /// Takes the sentence of a lidar's position packet.
   void AddPositionPacket(Utime time, Bytes payload);
 
   /// @param bytes  a stretch of a stream. @return whether it held a sentence with a right checksum

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kHullColumns = 44;       // the hull's length
 constexpr int kMarginColumns = 10;     // beyond bow and stern
-constexpr int kMostRows = 13;          // of a view
-constexpr double kRowPerColumn = 2.0;  // a character is so much higher than it is wide
+constexpr int kMostRows = 13;          // most rows of a view
+constexpr double kRowPerColumn = 2.0;  // height of a character over its width
 constexpr double kBowPart = 0.35;      // of the length, in which the hull narrows
 
 class Canvas {
@@ -46,7 +46,7 @@ struct Scale {
   int ColumnOf(double x_m) const { return kMarginColumns + kHullColumns / 2 + static_cast<int>(std::lround(x_m / column_m)); }
 };
 
-// Of the hull at a column, as a share of half the beam.
+// Half width of the hull at a column, as a share of half the beam.
 double Fullness(int column) {
   const double to_bow = static_cast<double>(kMarginColumns + kHullColumns - column) / (kHullColumns * kBowPart);
   return to_bow >= 1.0 ? 1.0 : std::sqrt(std::max(0.0, to_bow));

@@ -7,8 +7,8 @@
 
 namespace lookout::setup {
 
-/// Both views, the bow to the right, with the places that are known so far: L the lidar, an arrow beside it where its x axis points, G the antenna of
-/// GNSS. Before the size of the hull is known: empty.
+/// The boat from above and from the side, the bow to the right, with the places that are known so far: L the lidar, an arrow beside it where its x
+/// axis points, G the antenna of GNSS. Before the size of the hull is known: empty.
 std::string Picture(const config::Answers& answers);
 
 }  // namespace lookout::setup

@@ -27,8 +27,8 @@ std::string Trimmed(const std::string& text) {
   return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-// "5.2 x 2.1", "1.2m, 0, 1.5 m": numbers with a point, apart by blanks, x, commas or semicolons; nullopt: something else is in it. So is a comma
-// between digits: 5,2 may be meant as one number.
+// "5.2 x 2.1", "1.2m, 0, 1.5 m": numbers with a point, apart by blanks, x, commas or semicolons; nullopt: the text holds something else, or a comma
+// between digits, as 5,2 may be meant as one number.
 std::optional<std::vector<double>> Numbers(const std::string& text) {
   const auto is_digit = [](char letter) { return letter >= '0' && letter <= '9'; };
   for (std::size_t i = 1; i + 1 < text.size(); ++i) {

@@ -35,7 +35,7 @@ class SerialSearch {
 
   bool is_found() const { return is_found_; }
   const std::filesystem::path& device() const { return device_; }
-  const std::string& fault() const { return fault_; }  // of opening it; empty: none
+  const std::string& fault() const { return fault_; }  // fault of opening the port; empty: none
 
  private:
   std::filesystem::path device_;

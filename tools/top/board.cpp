@@ -217,7 +217,7 @@ void Board::KeepTracks(const std::vector<tracks_t>& parts, TimePoint now) {
   tracks_utime_us_ = parts.front().utime_us;
 }
 
-// AIS of a scan comes behind its TRACKS: until then that of the scan before holds.
+// AIS of a scan comes after its TRACKS: until then AIS of the scan before counts.
 void Board::MarkShips() {
   constexpr std::int64_t kMostApartUs = 2'000'000;
   if (!tracks_) return;
@@ -238,7 +238,7 @@ void Board::MarkShips() {
   unseen.resize(std::min(unseen.size(), TrackPicture::kMaxUnseenShips));
 }
 
-// Of the alerts of a track the gravest; alerts come sorted.
+// Marks each track with its gravest alert.
 void Board::MarkAlerts() {
   if (!tracks_ || !alerts_) return;
   for (auto& line : tracks_->lines) {
@@ -277,7 +277,7 @@ void Board::TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now) {
   process.last = now;
 }
 
-// A new start has another process id: the replaced process said nothing since. Of two that run both do.
+// A process that starts anew has another process id, and the replaced process sends nothing after that. Where two processes run, both still send.
 bool Board::IsReplaced(const ProcessKey& key, const ProcessState& process) const {
   return std::ranges::any_of(processes_, [&](const auto& other) {
     return other.first.name == key.name && other.first.host == key.host && other.first.pid != key.pid && other.second.first > process.last;
@@ -379,7 +379,7 @@ std::vector<std::string> Board::AlertLines(TimePoint now) const {
   for (const auto state : std::initializer_list<std::int32_t>{alert_t::STATE_ACTIVE, alert_t::STATE_RECTIFIED}) {
     for (const auto& alert : alerts_->alerts) {
       if (alert.state != state || lines.size() == kMaxAlertLines) continue;
-      // What stood when they ended is no less near since.
+      // Alerts that stood when ALERTS stopped are still shown: their causes need not have gone.
       const bool is_over = state == alert_t::STATE_RECTIFIED;
       lines.push_back((is_old ? std::string(is_over ? "before that, over: " : "before that: ") : LevelText(*alerts_, alert)) + alert.text);
     }

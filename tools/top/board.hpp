@@ -29,19 +29,19 @@ struct ChannelLine {
   std::optional<Rate> rate;              // nullopt: too early to tell
   std::optional<std::int64_t> num_lost;  // by gaps in seq, since the start or CountAnew; nullopt for a channel that is not of this project
   std::int64_t num_bad = 0;              // did not decode, or contradict themselves
-  std::chrono::nanoseconds age{0};       // of its last message
+  std::chrono::nanoseconds age{0};       // since the channel's last message
   bool is_silent = false;                // for longer than it should be
 };
 
 struct ProcessLine {
-  std::string name;                 // with its host where that is another than that of the first process heard of
-  std::chrono::nanoseconds age{0};  // of its last report
+  std::string name;                 // with the host where it is another than that of the first process that was heard
+  std::chrono::nanoseconds age{0};  // since the process's last report
   bool is_silent = false;           // for longer than it should be
   std::int32_t state = 0;           // as in health_t
   std::string reason;
   double cpu_fraction = 0.0;
   std::int64_t resident_bytes = 0;
-  std::int64_t latency_p99_us = -1;  // greatest of its data channels, from measurement to publication; -1 = none
+  std::int64_t latency_p99_us = -1;  // greatest latency of the process's data channels, from measurement to publication; -1 = none
 };
 
 /// Where the own boat is, out of POSE and GNSS_FIX.
@@ -60,10 +60,10 @@ struct ObstacleLine : obstacle_t {
 
 /// The nearest of a scan, at most Nearest::kMaxLines.
 struct NearestObstacles {
-  std::vector<ObstacleLine> lines;       // nearest first; those without a range last
-  std::vector<ObstacleLine> sure_lines;  // of those that are sure
+  std::vector<ObstacleLine> lines;       // nearest first; obstacles without a range last
+  std::vector<ObstacleLine> sure_lines;  // lines of sure obstacles
   std::int64_t num_obstacles = 0;        // of the scan
-  std::int64_t num_sure = 0;             // of them
+  std::int64_t num_sure = 0;             // sure obstacles of the scan
   std::int64_t num_parts_missing = 0;
   TimePoint time;  // when its last message came
 };
@@ -100,7 +100,7 @@ class Nearest {
 struct TrackLine : track_t {
   std::int32_t alert_level = 0;  // as in alert_t; 0: none
   bool is_acknowledged = false;
-  std::string ship = {};  // of AIS, that it is for sure: her name, else her MMSI; empty: none
+  std::string ship = {};  // the ship of AIS that this track is for sure: her name, else her MMSI; empty: none
 };
 
 /// A ship that AIS tells of, that the lidar should see, and that is no track.
@@ -112,7 +112,7 @@ struct UnseenShip {
 
 /// Tracks of the newest scan that came whole.
 struct TrackPicture {
-  std::vector<TrackLine> lines;               // confirmed and coasting ones, at most kMaxLines, the nearest; by id, so that rows keep their place
+  std::vector<TrackLine> lines;               // the nearest confirmed and coasting tracks, at most kMaxLines; by id, so that rows keep their place
   std::int64_t num_tracks = 0;                // confirmed and coasting
   TimePoint time;                             // when its last message came
   std::vector<UnseenShip> unseen_ships = {};  // at most kMaxUnseenShips, the nearest first
@@ -126,18 +126,18 @@ class Board {
   /// @param start  since when it listens
   explicit Board(TimePoint start) : start_(start) {}
 
-  /// A message of any channel. One that does not decode is counted. Memory is bounded: names above kMaxChannels are not told apart.
+  /// A message of any channel. A message that does not decode is counted. Memory is bounded: names above kMaxChannels are not told apart.
   void Take(std::string_view channel, Bytes bytes, TimePoint now);
 
-  /// Losses, bad messages and unlisted ones count from nought. What was heard, and what is silent, stays known.
+  /// Counts of lost, bad and unlisted messages start again from 0. Channels and processes that were heard stay known, as does their silence.
   void CountAnew();
 
-  /// Those of the channel table in its order, then the others by name.
+  /// Channels of the channel table in its order, then the others by name.
   std::vector<ChannelLine> Channels(TimePoint now) const;
 
-  /// Those of the suite in the order of the data flow, then the others by name. One that fell silent stays, until another of its name on its host has
-  /// taken its place. Of several that speak under one name each has its line, with host and process id. Names that are not of the suite count
-  /// as kMaxStrangers at most.
+  /// Processes of the suite in the order of the data flow, then the others by name. A silent process stays, until another of its name on its host has
+  /// taken its place. Where several send under one name each has a line, with host and process id. Names that are not of the suite count as
+  /// kMaxStrangers at most.
   std::vector<ProcessLine> Processes(TimePoint now) const;
 
   const OwnShip& own() const { return own_; }
@@ -162,7 +162,7 @@ class Board {
 
   static constexpr std::size_t kMaxChannels = 64;
   static constexpr std::size_t kMaxProcesses = 64;
-  static constexpr std::size_t kMaxStrangers = 8;  // among them
+  static constexpr std::size_t kMaxStrangers = 8;  // most processes among them that are not of the suite
 
  private:
   struct Traffic {

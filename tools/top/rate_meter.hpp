@@ -53,7 +53,7 @@ class RateMeter {
   static constexpr std::chrono::milliseconds kSlot{500};
 
   struct Slot {
-    std::int64_t number = -1;  // of its half second; -1 = never used
+    std::int64_t number = -1;  // number of the slot's half second; -1 = never used
     std::int64_t num_messages = 0;
     std::int64_t num_bytes = 0;
   };

@@ -46,7 +46,7 @@ std::string ChannelsHeader(int width) {
   return Fitting({Left("channel", 13), Right("Hz", 7), Right("kB/s", 7), Right("lost", 5), Right("bad", 4), Right("age", 5)}, width);
 }
 
-// Those of a second lidar are told from the first's by their end.
+// Channels of a second lidar differ from the first's by their end, which a cut must keep.
 std::string NameOfChannel(const std::string& name) {
   constexpr std::string_view kOfSecond = "_2";
   constexpr int kWidth = 13;

@@ -18,7 +18,7 @@ using Row = std::vector<Span>;
 
 struct View {
   int width = 80;
-  int height = 0;          // 0 = as many rows as it takes
+  int height = 0;          // 0 = as many rows as needed
   bool sure_only = false;  // obstacles that the segmenter is sure of; else all
   bool has_tracks = true;  // tracks in place of obstacles, where there is a tracker
 };

@@ -31,7 +31,7 @@ Plane FitPlane(std::span<const Eigen::Vector3d> points_m, const Indices& indices
   return {normal, normal.dot(mean_m)};
 }
 
-// Of `indices`, those lower than a height over the mean of the lowest.
+// The points of `indices` that are lower than a height over the mean of the lowest points.
 Indices Seeds(std::span<const Eigen::Vector3d> points_m, const Indices& indices, const GroundPlaneParams& params) {
   std::vector<double> height_m;
   for (const auto i : indices) height_m.push_back(points_m[i].z());
@@ -78,7 +78,7 @@ void JoinRuns(const ScanLine& line, std::span<const segmenter::Return> returns, 
   const auto shots = ShotsOf(line, returns);
   for (std::size_t i = 0; i < shots.size(); ++i) {
     join(shots[i], shots[i]);
-    join(shots[i], shots[i + 1 < shots.size() ? i + 1 : 0]);  // the last one with the first: the circle is closed
+    join(shots[i], shots[i + 1 < shots.size() ? i + 1 : 0]);  // the last shot is merged with the first: the circle is closed
   }
 }
 

@@ -1,4 +1,4 @@
-// F3D: runs along each ring, merged with those of the ring above.
+// F3D: runs along each ring, merged with runs of the ring above.
 #pragma once
 
 #include <Eigen/Geometry>

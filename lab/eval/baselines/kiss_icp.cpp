@@ -15,7 +15,7 @@ namespace {
 using odometer::Matrix6;
 using odometer::Vector6;
 
-// Of a rotation by less than pi.
+// Angle of a rotation by less than pi.
 double AngleOf(const Eigen::Matrix3d& R) { return Atan2(odometer::RotationVector(R).norm(), 0.5 * (R.trace() - 1.0)); }
 
 std::vector<Eigen::Vector3d> FirstOfEachVoxel(const std::vector<Eigen::Vector3d>& points_m, double voxel_m) {

@@ -25,7 +25,7 @@ struct KissIcpParams {
   double sample_per_voxel = 1.5;      // and of these one to be registered
   std::size_t max_points_per_voxel = 20;
   double initial_threshold_m = 2.0;
-  double min_deviation_m = 0.1;  // from the expected motion: a smaller one does not count
+  double min_deviation_m = 0.1;  // from the expected motion: a smaller deviation does not count
   double convergence = 1e-4;     // length of a step of m and rad
   int max_iterations = 500;
 };
@@ -33,7 +33,7 @@ struct KissIcpParams {
 /// A return at the time of its shot.
 struct LidarPoint {
   Eigen::Vector3d p_lidar_m;
-  double before_end_s = 0.0;  // its shot is so long before the last shot of the scan
+  double before_end_s = 0.0;  // time from its shot to the last shot of the scan
 };
 
 /// A constant velocity of the lidar.
@@ -74,7 +74,8 @@ class VoxelMap {
   void Add(const Eigen::Vector3d& p_map_m);
   /// Voxels whose first point lies farther than this from `center_m` are forgotten.
   void Forget(const Eigen::Vector3d& center_m, double radius_m);
-  /// The nearest point of the voxel and of the 26 around it; of equals that of the lower voxel by x, y, z, then the one that came first.
+  /// The nearest point of the voxel and of the 26 around it; at equal distance the point of the lower voxel by x, y, z, then the point that came
+  /// first.
   std::optional<Eigen::Vector3d> Nearest(const Eigen::Vector3d& p_map_m) const;
   bool empty() const { return voxels_.empty(); }
 
@@ -100,8 +101,8 @@ class VoxelMap {
 Eigen::Isometry3d AlignPoints(const std::vector<Eigen::Vector3d>& points_m, const Eigen::Isometry3d& begin, double max_distance_m, double kernel,
                               const VoxelMap& map, const KissIcpParams& params);
 
-/// Place and attitude of a lidar from scan to scan. The map is its frame at the end of the first scan. It always says a motion: where nothing is in
-/// sight that of before.
+/// Place and attitude of a lidar from scan to scan. The map is its frame at the end of the first scan. A motion is always given: where nothing is in
+/// sight the motion before.
 class KissIcp {
  public:
   explicit KissIcp(const KissIcpParams& params = {}) : params_(params), threshold_(params), map_(params.voxel_m, params.max_points_per_voxel) {}

@@ -10,19 +10,19 @@
 namespace lookout::eval {
 
 struct NearestNeighbourParams {
-  // Of position and velocity: usual values for tracking at a high rate (E. Brookner, "Tracking and Kalman Filtering Made Easy", Wiley 1998, 1.2:
-  // critically damped for a fading memory of 0.7).
+  // Gains of position and velocity: usual values for tracking at a high rate (E. Brookner, "Tracking and Kalman Filtering Made Easy", Wiley 1998,
+  // 1.2: critically damped for a fading memory of 0.7).
   double alpha = 0.51;
   double beta = 0.09;
   double gate_m = 3.0;           // of distance between position and prediction, drawn from the size of small boats
   double gate_growth_mps = 5.0;  // growth of the gate for each second since the last hit, from the speed of boats
   int num_hits = 3;              // of the last num_looks scans: then it is reported
-  int num_looks = 5;             // as many misses in a row end it
-  double moving_mps = 0.5;       // above, it is taken for moving
+  int num_looks = 5;             // as many misses in a row end the track
+  double moving_mps = 0.5;       // a faster track counts as moving
 };
 
 /// Obstacles that are sure, placed and not land. Of all pairs of track and obstacle within the gate the nearest is taken first, then the nearest of
-/// the remaining ones; of equals the track and then the obstacle of lower id. Remaining obstacles begin tracks.
+/// the remaining ones; at equal distance the track, and then the obstacle, of lower id comes first. Remaining obstacles begin tracks.
 class NearestNeighbour final : public MultiObjectTracker {
  public:
   explicit NearestNeighbour(const NearestNeighbourParams& params = {}) : params_(params) {}
@@ -35,7 +35,7 @@ class NearestNeighbour final : public MultiObjectTracker {
     TrackState state;
     std::int64_t time_us = 0;  // of the state
     std::int64_t hit_us = 0;   // of the last obstacle
-    std::vector<bool> looks;   // the last ones, newest last: hit or not
+    std::vector<bool> looks;   // the last looks, newest last: hit or not
   };
 
   void Predict(std::int64_t time_us);

@@ -45,9 +45,9 @@ using Grouping = std::function<segmenter::Groups(const segmenter::Scan&, std::sp
 
 /// A method that is a grouping of the returns.
 ///
-/// Returns out of range, out of the field of view and of the own vessel are left out by the filter of the segmenter, so that all methods see
-/// the same ones; in dual return, what repeats another return of its shot has the label of that one. Segments are numbered in the order of their
-/// first return. None of the papers knows a doubt: a size is the choice that they offer (SizeLimits).
+/// Returns out of range, out of the field of view and of the own vessel are left out by the filter of the segmenter, so that all methods see the same
+/// returns; in dual return, a return that repeats another return of its shot has the other's label. Segments are numbered in the order of their first
+/// return. None of the papers knows a doubt: a size is the choice that they offer (SizeLimits).
 class Peer final : public Method {
  public:
   Peer(std::string name, const segmenter::ReturnFilter& filter, SizeLimits limits, Grouping grouping)

@@ -15,8 +15,8 @@ Methods MakePeers(const segmenter::ReturnFilter& filter) {
   const auto add = [&](const char* name, SizeLimits limits, Grouping grouping) {
     methods.push_back(std::make_unique<Peer>(name, filter, limits, std::move(grouping)));
   };
-  // Of any size unless said: on the water a single return may be a buoy. A least size is the peers' choice between recall and false segments; 1 and 3
-  // were in the grid of tuning.
+  // Segments of any size count unless said otherwise: on the water a single return may be a buoy. A least size is the peers' choice between recall
+  // and false segments; 1 and 3 were in the grid of tuning.
   constexpr SizeLimits kAnySize{};
   constexpr SizeLimits kThreeOrMore{3};
   // PCL's tutorial is about things on a table.

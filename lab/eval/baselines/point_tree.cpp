@@ -18,7 +18,7 @@ struct PointTree::Index {
     }
     template <typename Box>
     bool kdtree_get_bbox(Box&) const {
-      return false;  // nanoflann works it out
+      return false;  // nanoflann computes the bounding box
     }
   };
 

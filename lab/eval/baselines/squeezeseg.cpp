@@ -15,7 +15,7 @@ namespace {
 using learned::Class;
 using learned::Views;
 
-// The class of each return: that of its pixel, which is the class of the nearest return there.
+// The class of each return: the class of its pixel, which is that of the nearest return there.
 std::vector<Class> ClassesOf(const learned::Network& network, const segmenter::Scan& scan, std::span<const segmenter::Return> returns,
                              const Views& views) {
   const auto pixels_of_view = static_cast<std::size_t>(views.PixelsOfView());

@@ -45,7 +45,7 @@ class LearnedWeights {
   std::map<std::string, Trained> by_name_;
 };
 
-/// In each family that is left out the weights without it, elsewhere those of all.
+/// Uses, in each family that is left out, the weights trained without it; elsewhere the weights trained on all.
 class SqueezeSegLeftOut final : public Method {
  public:
   /// @param left_out  families. @throws std::runtime_error when all weights were trained on one of them

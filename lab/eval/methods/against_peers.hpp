@@ -13,7 +13,7 @@ namespace lookout::eval {
 /// The peer of the greatest mIoU; of equals the first of the tables. Shares from 0 to 1.
 struct BestPeer {
   std::string name;
-  double iou = 0.0;             // its mIoU
+  double iou = 0.0;             // the peer's mIoU
   double false_segments = 0.0;  // a scan
   /// (1 - our mIoU) / (1 - its mIoU): below 1 ours is better; NaN where the peer's mIoU is 100.0 % as printed.
   double error_share = 0.0;

@@ -33,7 +33,7 @@ enum class CaptureTruth { kOfReturns, kOfObjects };
 std::vector<CaptureWithTruth> ListCaptures(const std::filesystem::path& folder, CaptureTruth truth = CaptureTruth::kOfReturns);
 
 /// The boat of the captures: facts from the boat.txtpb beside them, all else (segmenter, decoder) from a config folder. Where there is no
-/// boat.txtpb beside them, the facts are those of the config folder, too.
+/// boat.txtpb beside them, the facts come from the config folder, too.
 ///
 /// @throws config::ConfigError
 Boat LoadBoatOfCaptures(const std::filesystem::path& folder, const std::filesystem::path& config_folder);
@@ -47,10 +47,10 @@ struct CaptureReport {
   std::int64_t num_unmatched = 0;  // without truth: counted as clutter
 };
 
-/// Of the returns: above this a capture and its truth do not belong together.
+/// Share of returns without truth above which a capture and its truth do not belong together.
 inline constexpr double kMaxUnmatchedShare = 0.001;
 
-/// A return and its truth are of one ring, within this time, and of one range in steps of 2 mm.
+/// A return and its truth have one ring, times that differ by at most this, and one range in steps of 2 mm.
 inline constexpr std::chrono::microseconds kMatchTolerance{3};
 
 /// A capture, unpacked into memory that has the name of a file, as libpcap asks for one.
@@ -68,10 +68,10 @@ class UnpackedCapture {
 /// Objects of a capture by id, called by their type and id. @throws std::runtime_error "file:line: reason"
 std::map<std::int32_t, ScanObject> ReadObjectsOfCapture(const CaptureWithTruth& files);
 
-/// Decodes a capture as lookout-lidar does and hands on each whole scan with its truth. Times are those of the sensor's clock.
+/// Decodes a capture as lookout-lidar does and hands on each whole scan with its truth. Times are by the sensor's clock.
 ///
 /// Returns of the own vessel (object -1) are taken out of the scan; clutter (object 0) stays. Each row of the truth is met once; of several possible
-/// ones, the one of the same return index, then the nearest in time. The truth is read as it is needed, so it must be in the order of time.
+/// rows, the row of the same return index, then the nearest in time. The truth is read as it is needed, so it must be in the order of time.
 /// Deterministic. Memory: a scan, its truth, and the whole capture unpacked, 1 GiB at most.
 /// @throws std::runtime_error "file:line: reason" or "file: reason" for a file that cannot be read; when more than kMaxUnmatchedShare have no truth;
 /// when there is no whole scan

@@ -79,7 +79,7 @@ std::vector<ReliabilityBin> ReliabilityOf(const Confidence& confidence) {
   if (confidence.num_scans == 0) return bins;
   for (int bin = 0; bin < kNumBins; ++bin) {
     Confidence::Stated all;
-    const bool is_last = bin + 1 == kNumBins;  // 1 itself is in it
+    const bool is_last = bin + 1 == kNumBins;  // the last bin includes 1
     const auto end = is_last ? confidence.segments.end() : confidence.segments.lower_bound((bin + 1) * kStepsOfBin);
     for (auto entry = confidence.segments.lower_bound(bin * kStepsOfBin); entry != end; ++entry) {
       all.count += entry->second.count;

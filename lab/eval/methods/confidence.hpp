@@ -19,16 +19,16 @@ struct Confidence {
     bool operator==(const Stated&) const = default;
   };
   std::map<int, Stated> segments;              // by thousandth
-  std::map<int, std::int64_t> false_segments;  // by thousandth: those without a return of an object
+  std::map<int, std::int64_t> false_segments;  // by thousandth of probability: segments without a return of an object
   std::map<int, std::int64_t> things;          // by the greatest thousandth among the segments that are more than half theirs
-  std::int64_t num_things = 0;                 // also those that have no such segment
+  std::int64_t num_things = 0;                 // all things, also things that have no such segment
   std::int64_t num_scans = 0;                  // of methods that state probabilities
 
   void Add(const Confidence& other);
   bool operator==(const Confidence&) const = default;
 };
 
-/// Of one scan; empty when the labelling states no probability.
+/// Confidence of one scan; empty when the labelling states no probability.
 ///
 /// @param min_num_returns  objects with fewer in the scan are no things
 Confidence ConfidenceOf(const Confusion::Matches& matches, const Labelling& labelling, std::int64_t min_num_returns);

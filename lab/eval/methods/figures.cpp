@@ -213,7 +213,7 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
     figures.push_back({name, std::move(captions), std::move(table)});
   };
   const auto tables = TablesOf(results);
-  // Of a table of the run the methods and the columns that are wanted.
+  // Adds, of a table of the run, the methods and columns that are wanted.
   const auto add_table = [&](const std::string& name, const std::string& table_name, const std::string& caption,
                              bool (*is_wanted)(const std::string&), bool (*is_column_wanted)(const std::string&) = IsAny) {
     const auto found = std::ranges::find(tables, table_name, &NamedTable::name);

@@ -17,7 +17,7 @@ struct ReadmeFigure {
   Table table;
 };
 
-/// What README files show of a run. A figure whose tables the run has not made is left out.
+/// Figures of a run for README files. A figure whose tables the run has not made is left out.
 ///
 /// @param date  of the run, for the captions: "2026-11-22"
 std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& date);
@@ -29,13 +29,13 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
 /// @throws std::runtime_error "file:line: reason" for a block without end, an end without block, or a name that no figure has
 std::string FillBlocks(std::string_view text, const std::vector<ReadmeFigure>& figures, const std::string& file);
 
-/// The same of files, and says so. @throws as FillBlocks, and for files that cannot be read or written
+/// FillBlocks for files; prints what it did. @throws as FillBlocks, and for files that cannot be read or written
 void FillBlocksOf(const std::vector<std::filesystem::path>& files, const std::vector<ReadmeFigure>& figures);
 
 /// Tables of runs as figures of the same names. @param scope  of the run, in words
 std::vector<ReadmeFigure> FiguresOf(const std::vector<NamedTable>& tables, const std::string& scope);
 
-/// Of now: "2026-11-22", UTC.
+/// The present date: "2026-11-22", UTC.
 std::string Today();
 /// "Measured 2026-11-22 by ...": for captions of today's figures (UTC).
 std::string MeasuredToday();

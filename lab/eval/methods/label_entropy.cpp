@@ -9,7 +9,7 @@
 namespace lookout::eval {
 namespace {
 
-// Of the shares of some parts; empty parts add nothing.
+// Entropy of the shares of some parts; empty parts add nothing.
 double EntropyOfParts(const std::vector<std::int64_t>& parts) {
   std::int64_t sum = 0;
   for (const auto part : parts) sum += part;

@@ -5,11 +5,13 @@
 
 namespace lookout::eval {
 
-/// Of one scan; natural logarithm, 0 is best. Both are sums over the scan, as they are published, and none where no object is seen.
+/// Entropies of one scan; natural logarithm, 0 is best. Both are sums over the scan, as published; without an object in the scan there is none.
 ///
-/// Over (OSE): of an object the entropy of the labels over its returns, those in no segment as one label more; summed over the objects. Under (USE):
-/// of a label the entropy of the objects over its returns, all of no object as one object more; summed over the labels. Source: M. Oh et al.,
-/// "TRAVEL: Traversable ground and above-ground object segmentation using graph representation of 3D LiDAR scans", IEEE RA-L 7 (2022), section IV.
+/// Over (OSE): for each object the entropy of the labels of its returns, where returns in no segment count as one label more; summed over the
+/// objects. Under (USE): for each label the entropy of the objects of its returns, where returns of no object count as one object more; summed over
+/// the labels.
+/// Source: M. Oh et al., "TRAVEL: Traversable ground and above-ground object segmentation using graph representation of 3D LiDAR scans", IEEE RA-L 7
+/// (2022), section IV.
 struct LabelEntropy {
   Mean over;
   Mean under;

@@ -23,7 +23,7 @@ struct LabelFigures {
   void AddValues(const LabelFigures& scene);
 };
 
-/// Of one scan. @param land  ids of the objects that are land
+/// Figures of one scan. @param land  ids of the objects that are land
 LabelFigures LabelFiguresOf(const Confusion::Matches& matches, const std::set<int>& land);
 
 }  // namespace lookout::eval

@@ -52,17 +52,17 @@ class Method {
   Method& operator=(const Method&) = delete;
   virtual ~Method() = default;
 
-  /// "paper W=512", "Euclidean 0.5 m (tuned)". In tables that of a method that knows doubt is followed by its operating point.
+  /// "paper W=512", "Euclidean 0.5 m (tuned)". In tables the name of a method that knows doubt is followed by the operating point.
   virtual std::string name() const = 0;
 
-  /// It takes some of its segments for tentative: it is scored at two operating points, all segments and the sure ones alone.
+  /// The method rates some segments as tentative: it is scored at two operating points, all segments and the sure ones alone.
   virtual bool knows_doubt() const { return false; }
 
-  /// The next scan is that of this place: for methods that must not know anything of its scene, or that know the scans before it.
-  /// @return false: it does not label such scans, and has no score there
+  /// Announces that the next scan is the one of this place: for methods that must not know anything of its scene, or that know the scans before.
+  /// @return false: the method does not label such scans, and has no score there
   virtual bool BeginScan(const ScanPlace& /*place*/) { return true; }
 
-  /// Pure but for its time: the same scan of the same place gives the same labels.
+  /// Pure but for the measured time: the same scan of the same place gives the same labels.
   virtual Labelling Segment(const segmenter::Scan& scan) = 0;
 };
 

@@ -10,7 +10,7 @@
 
 namespace lookout::eval {
 
-/// The segmenter of the boat. Labels and time are those of its undivided run; its stages are then measured in a second pass: project (sort out
+/// The segmenter of the boat. Labels and time come from its undivided run; its stages are then measured in a second pass: project (sort out
 /// returns and place them in the image), search, cluster, measure.
 class SegmenterMethod final : public Method {
  public:

@@ -43,7 +43,7 @@ Fate FateOf(int id, const Confusion::Matches& matches, const std::map<std::int32
   const auto& object = matches.objects.at(id);
   Fate fate;
   std::int64_t num_in_segments = 0;
-  std::int64_t num_held = 0;  // of its returns, by fate.segment
+  std::int64_t num_held = 0;  // returns of the object that fate.segment holds
   const auto rank = [&](int label) {
     const auto& segment = matches.segments.at(label);
     const auto shares = SharesOf(id, segment, objects);

@@ -21,22 +21,22 @@ bool IsLand(const data::ScanObject& object);
 
 enum class Outcome {
   kFound,        // IoU >= kFoundIou
-  kIntoLand,     // the segment that holds most of it is mostly of land
+  kIntoLand,     // the segment that holds most of the thing is mostly land
   kIntoThing,    // mostly of other things
-  kCut,          // mostly its own, and at least as many of its returns are elsewhere as foreign ones are in it
+  kCut,          // the segment is mostly the thing's, and at least as many returns of the thing are elsewhere as foreign returns are in the segment
   kWithClutter,  // mostly of no object
-  kMissed,       // more of its returns are in no segment than in any one
+  kMissed,       // more returns of the thing are in no segment than in any segment
 };
 inline constexpr std::array<std::string_view, 6> kOutcomeNames{"found", "into_land", "into_thing", "cut", "with_clutter", "missed"};
 constexpr std::string_view NameOf(Outcome outcome) { return kOutcomeNames[static_cast<std::size_t>(outcome)]; }
 
 struct Fate {
   Outcome outcome = Outcome::kMissed;
-  int segment = 0;  // label of the one that holds most of its returns; 0 = none
+  int segment = 0;  // label of the segment that holds most returns of the object; 0 = none
   int held_by = 0;  // the object, or none, of most of that segment's returns
 };
 
-/// Of an object that is a thing, or of land.
+/// The fate of an object that is a thing or land.
 ///
 /// Of segments that hold equally much of it, the smallest counts, then the order of their objects and shares decides; the ids of segments decide
 /// nothing but `segment`. Precondition: `id` is of matches.objects.

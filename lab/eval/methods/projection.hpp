@@ -24,7 +24,7 @@ class ProjectionTable {
     Mean points;          // a scan
     Mean kept;            // a scan
     Mean true_positives;  // of the returns of objects that are kept
-    Mean distance_m;      // of a return that is kept
+    Mean distance_m;      // distance of a return that is kept
     double squared_distance_m2 = 0.0;
   };
 

@@ -35,7 +35,7 @@ struct Truth {
 
 static_assert(sim::kNoObject == kNoTrueObject && sim::kOwnVessel == kOwnVesselObject);
 
-// Takes the truth of each cell with a return, column by column. Within a column the order is that of lasers there and of rings here.
+// Takes the truth of each cell with a return, column by column. Within a column the truth is in the order of lasers, cells are in the order of rings.
 std::vector<std::int32_t> TakeObjects(const segmenter::Scan& scan, std::deque<Truth>& truths) {
   const auto num_rings = static_cast<std::size_t>(scan.head.num_rings());
   const auto num_returns = static_cast<std::size_t>(scan.head.num_returns);

@@ -15,7 +15,7 @@ std::vector<NamedTable> TablesOf(const Results& results);
 
 void PrintTables(const Results& results, std::ostream& out);
 
-// Of one world each; in TablesOf as well.
+// Tables of one world each; TablesOf contains them as well.
 
 /// The tables by which anything is chosen: ours on families that its evidence was not fitted on. Without rows where nothing was left out.
 std::vector<NamedTable> LeaveOutTablesOf(const Results& results);

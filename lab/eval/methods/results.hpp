@@ -84,10 +84,10 @@ struct MethodResult {
 bool IsPeer(const MethodResult& method);
 bool IsTunedPeer(const MethodResult& method);
 
-/// It looks at a part of each scan alone: its figures are not those of the same task as others'.
+/// Whether the method sees only a part of each scan: its figures are then of another task than the others'.
 bool HasPartialView(const MethodResult& method);
 
-/// Of the scenes in which it is known, each counting the same; NaN when there is none.
+/// Mean of a figure over the scenes in which it is known, each with equal weight; NaN when there is none.
 double MeanOverScenes(const Results& results, const MethodResult& method, Mean Score::*figure);
 
 /// Over all scans.
@@ -109,9 +109,9 @@ struct Curve {
 };
 
 struct Results {
-  std::string world;    // whose scenes these are: empty = our own simulator's
+  std::string world;    // maker of the scenes; empty = our own simulator
   bool is_here = true;  // false: the captures of this world are not on this computer, and nothing below is known
-  std::string command;  // that made it
+  std::string command;  // command that made the results
   std::string version;
   std::string computer;
   std::vector<std::string> scenes;  // in the order of the tables
@@ -131,7 +131,7 @@ struct Results {
   };
   std::vector<Projection> projections;
   std::vector<std::string> notes;  // on the input, for people
-  /// The same methods, in the same order, on scenes of others.
+  /// Results of the same methods, in the same order, on scenes of other simulators.
   std::vector<Results> other_worlds;
 };
 

@@ -40,7 +40,7 @@ std::vector<std::string> NamesOfScenes(const std::vector<std::string>& names, co
 /// Checks names of heads. @throws std::invalid_argument for one that is none; it says which there are
 void CheckLidars(const std::vector<std::string>& names);
 
-/// As it stands in tables: the name itself, or that of the file without folder and ending.
+/// Name of a scene in tables: the name itself, or the file's name without folder and ending.
 std::string SceneLabel(const std::string& name_or_path);
 
 /// Renders scene after scene, seed after seed, and calls with each scan.

@@ -32,7 +32,7 @@ namespace {
 
 bool IsThing(const ScanObject& about, const Confusion::Object& object) { return object.num_returns >= Score::kMinReturnsOfThing && !IsLand(about); }
 
-// Of the nearest return that is scored, of each object.
+// Range of the nearest scored return of each object.
 std::map<std::int32_t, double> NearestM(const LabelledScan& truth, const std::vector<std::int32_t>& label) {
   std::map<std::int32_t, double> nearest_m;
   for (std::size_t cell = 0; cell < label.size(); ++cell) {

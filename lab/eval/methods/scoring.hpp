@@ -22,7 +22,7 @@ Confusion::Matches MatchScan(const LabelledScan& truth, const std::vector<std::i
 struct LostThing {
   std::int32_t object = 0;
   std::int64_t num_returns = 0;
-  double range_m = 0.0;  // of its nearest return
+  double range_m = 0.0;  // of the object's nearest return
   double iou = 0.0;
   Fate fate;
 };

@@ -63,7 +63,7 @@ struct Plan {
   bool Holds(const Spot& spot) const { return std::max(std::abs(spot.right_m), std::abs(spot.forward_m)) < reach_m; }
 };
 
-// Dots of one colour are one path: strokes without length, with round ends. Those that fall on one pixel are one dot.
+// Dots of one colour are one path: strokes without length, with round ends. Returns that fall on one pixel are one dot.
 std::string DotsOf(const Plan& plan, const std::vector<Spot>& spots, const std::function<std::string(const Spot&)>& colour_of) {
   std::map<std::string, std::set<std::pair<long, long>>> by_colour;
   for (const auto& spot : spots) {
@@ -121,7 +121,7 @@ std::string FileNameOf(const std::string& text) {
   return name;
 }
 
-// Their names depend on the failures: those of an earlier run would stand among the new ones.
+// Removes the pictures of an earlier run: names depend on the failures, so old pictures would stand among the new.
 void RemovePictures(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -1,4 +1,4 @@
-// Pictures (SVG) of the scans that went worst, truth and prediction side by side, with what became of the things that were lost.
+// Pictures (SVG) of the scans that went worst, truth and prediction side by side, with the fates of lost things.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace lookout::eval {
 /// object or segment grey. Circles number the things that were lost; below, what became of them. The view ends a little behind the farthest of these.
 std::string PictureOf(const std::string& title, const LabelledScan& truth, const std::vector<std::int32_t>& label);
 
-/// Of each row of the tables and each scene the scans of least mIoU; of ten scans (a second) of a seed one at most, since neighbours look alike.
+/// For each row of the tables and each scene the scans of least mIoU; at most one of ten scans (1 s) of a seed, since neighbours look alike.
 class WorstPictures {
  public:
   explicit WorstPictures(std::size_t num_per_scene) : num_per_scene_(num_per_scene) {}

@@ -11,7 +11,7 @@ namespace lookout::eval {
 
 namespace {
 
-// Of the bow, counter-clockwise seen from above.
+// Bearing of the bow, counter-clockwise seen from above.
 double BearingOf(const Eigen::Isometry3d& T_level_vessel) { return Atan2(T_level_vessel.linear()(1, 0), T_level_vessel.linear()(0, 0)); }
 
 }  // namespace

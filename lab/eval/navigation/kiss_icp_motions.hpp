@@ -13,7 +13,7 @@
 
 namespace lookout::eval {
 
-/// All returns of a scan with their times, by column, then ring, but for those of the own vessel.
+/// All returns of a scan with their times, by column, then ring, without returns of the own vessel.
 std::vector<LidarPoint> LidarPoints(const odometer::Scan& scan, const config::BoatFacts& boat);
 
 /// KISS-ICP on a boat. It follows the lidar in six degrees of freedom and knows no vertical. It is told the roll and pitch of the boat at the first

@@ -59,7 +59,7 @@ void Write(const fs::path& file, const std::vector<OdometryMessage>& motions) {
   out.Write(std::string_view(kHeader));
   for (const auto& [time, message] : motions) {
     std::string row = fmt::format("{},{},{},{}", ToUtimeUs(time), message.begin_utime_us, message.utime_us, message.reason);
-    // Exact: 17 digits. What is unknown is not read again.
+    // Exact, with 17 digits. Values of an unknown motion are not read again.
     const bool is_known = message.status == lidar_odometry_t::STATUS_OK;
     const auto add = [&](double value) { row += fmt::format(",{:.17g}", is_known ? value : 0.0); };
     add(message.displacement_m[0]);

@@ -43,8 +43,8 @@ struct OdometryScores {
   std::int64_t num_known = 0;
   double way_m = 0.0;       // true, of the known motions
   double known_s = 0.0;     // their time
-  double drift_m = 0.0;     // of all known motions of a run one after the other
-  double turned_rad = 0.0;  // the same of heading, without sign
+  double drift_m = 0.0;     // error of all known motions of a run, one after the other
+  double turned_rad = 0.0;  // error of heading of all these motions, without sign
   double forward_m2 = 0.0;  // squares of the errors of each motion
   double port_m2 = 0.0;
   double turn_rad2 = 0.0;

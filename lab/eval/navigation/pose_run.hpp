@@ -13,13 +13,13 @@
 
 namespace lookout::eval {
 
-/// What the navigator hears.
+/// The sensors that the navigator hears.
 struct PoseCase {
   std::string sensors;  // for people: "RTK, IMU"
   sim::NavigationParams navigation;
   bool has_imu = true;
   bool has_odometry = true;
-  double gap_begin_s = 0.0;  // from here to the end of the gap there are no sentences but those of an IMU; both 0 = no gap
+  double gap_begin_s = 0.0;  // from here to the end of the gap only an IMU sends sentences; both 0 = no gap
   double gap_end_s = 0.0;
 
   bool has_gap() const { return gap_end_s > gap_begin_s; }
@@ -31,7 +31,7 @@ struct PoseScores {
   std::vector<double> heading_errors_rad;  // without sign
   std::vector<double> position_errors_m;
   std::vector<double> velocity_errors_mps;
-  std::int64_t num_poses = 0;        // of that time, on the earth or not
+  std::int64_t num_poses = 0;        // poses of that time, on the earth or not
   std::int64_t num_in_ellipse = 0;   // of 95 %
   std::vector<double> end_errors_m;  // of position at the end of the gap, of each run that knew it
   std::vector<double> end_headings_rad;

@@ -10,7 +10,7 @@
 namespace lookout::eval {
 namespace {
 
-// Of a segment in the parts of SEGMENTS, and the time that its hull counts from.
+// A segment in the parts of SEGMENTS.
 const segment_t* FindSegment(const messages::ScanMessages& scan, int id) {
   for (const auto& [part_index, message] : scan.segments) {
     const auto found = std::ranges::find(message.segments, id, &segment_t::id);

@@ -31,8 +31,8 @@ struct Errors {
 struct ObstacleRow {
   obstacle_t obstacle;
   std::string object_name;                   // "?" = not known
-  std::optional<double> position_outside_m;  // of its centre
-  std::optional<double> vertex_outside_m;    // greatest of its footprint
+  std::optional<double> position_outside_m;  // of the obstacle's centre
+  std::optional<double> vertex_outside_m;    // greatest of the corners of the footprint
 };
 
 struct KindScore {
@@ -64,10 +64,10 @@ class Evaluation {
   std::map<std::string, KindScore> scores_by_kind;
   Mean scan_iou;                       // of whole scans: mean over the objects
   Mean clutter_segments;               // per whole scan
-  Mean sure_clutter_segments;          // of these, those that are sure
+  Mean sure_clutter_segments;          // sure ones among clutter segments
   Mean segments;                       // per whole scan
   std::int64_t num_returns = 0;        // of scans whose scan and segments are in the log
-  std::int64_t num_joined = 0;         // of these, found in the truth
+  std::int64_t num_joined = 0;         // returns that were found in the truth
   std::vector<SeenObstacle> seen;      // of status ok; in the order of their scans
   std::array<Summary, 4> pose_errors;  // horizontal m, heading deg, roll deg, pitch deg
 

@@ -10,7 +10,7 @@ namespace lookout::eval {
 
 void PrintObstacles(std::ostream& out, const Evaluation& evaluation, bool has_truth);
 void PrintAccuracy(std::ostream& out, const Evaluation& evaluation);
-/// The places of obstacles against the centre of what was truly seen of them.
+/// Prints the places of obstacles against the true centres of the parts that were seen.
 void PrintSeen(std::ostream& out, const Evaluation& evaluation);
 void PrintSegmentation(std::ostream& out, const Evaluation& evaluation, int min_num_returns);
 void PrintMachine(std::ostream& out, const Machine& machine);

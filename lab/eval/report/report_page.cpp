@@ -149,7 +149,7 @@ Json OutcomesOf(const std::map<std::string, Outcomes>& outcomes_by_kind) {
   return rows;
 }
 
-// Columns of scenes and kinds are those of the world.
+// Columns are the scenes and kinds of the world.
 Json MethodOf(const Results& world, const MethodResult& method, const std::set<std::string>& kinds) {
   Score total = Total(method);
   Json json{{"name", PrintableLines(method.method)}, {"is_partial", HasPartialView(method)}, {"mean", Json::object()}, {"total", FiguresOf(total)}};

@@ -14,7 +14,7 @@ namespace lookout::eval {
 /// which it stands.
 std::string JsonOf(const Results& results);
 
-/// Writes the page: one HTML file with its data, style and script; it needs nothing from the network. The same results give the same bytes.
+/// Writes the page: one HTML file with its data, style and script; it needs nothing from the network. Equal results give equal bytes.
 void WriteHtml(const Results& results, std::ostream& out);
 
 }  // namespace lookout::eval

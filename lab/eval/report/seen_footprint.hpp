@@ -1,4 +1,4 @@
-// What was truly seen of an obstacle, against where it was put.
+// The true place of the seen part of an obstacle, against the place that was published.
 #pragma once
 
 #include <Eigen/Geometry>

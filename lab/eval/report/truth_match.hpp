@@ -17,8 +17,8 @@ namespace lookout::eval {
 struct ReturnMatch {
   std::int64_t num_scans = 0;
   std::int64_t num_returns = 0;
-  std::int64_t num_found = 0;     // there is one of the same laser and time
-  std::int64_t num_agreeing = 0;  // and it is as far away, as far as the truth says it
+  std::int64_t num_found = 0;     // the truth has a return of the same laser and time
+  std::int64_t num_agreeing = 0;  // and of the same range, where the truth states one
 };
 
 class TruthMatch {
@@ -55,7 +55,7 @@ class TruthMatch {
   std::int64_t num_scans_outside_ = 0;
   std::optional<std::int64_t> last_utime_us_;
   std::optional<TruthSpan> log_span_;     // of its scans
-  std::optional<TruthSpan> scored_span_;  // of those within
+  std::optional<TruthSpan> scored_span_;  // of the scored scans
   ReturnMatch by_time_;
   ReturnMatch by_direction_;
   Summary pose_distance_m_;

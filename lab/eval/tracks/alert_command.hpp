@@ -11,8 +11,8 @@ namespace lookout::eval {
 
 /// A run is no longer than its scene says that it lasts.
 struct AlertOptions : RunOptions {
-  double berth_seconds = 60.0;                  // of each seed, where the own boat lies in its berth
-  std::vector<std::filesystem::path> captures;  // folders; one that does not exist is said, and left out
+  double berth_seconds = 60.0;                  // seconds of each seed, where the own boat lies in its berth
+  std::vector<std::filesystem::path> captures;  // folders; a missing folder is reported and left out
   std::size_t num_jobs = 1;                     // runs at once
   std::filesystem::path kept_folder;            // keeps the tracker's inputs, for use again (KeptRun); empty = none
   std::filesystem::path list_file;              // each alert and danger, a row of CSV; empty = none

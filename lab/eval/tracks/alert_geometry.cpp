@@ -163,7 +163,7 @@ double HullOutline::Gap(const Polygon& hull_m, double enough_m) const {
     }
     if (least_m2 == 0.0) return 0.0;
   }
-  // One may lie wholly within the other.
+  // One shape may lie wholly within the other.
   if (box_gap_m == 0.0 && (IsInside(hull_m.front(), corners_m_) || IsInside(corners_m_.front(), hull_m))) return 0.0;
   if (least_m2 <= enough_m2) return std::sqrt(least_m2);
   // Blocks that were left out may be nearer than the edges that were looked at, and both are more than enough.

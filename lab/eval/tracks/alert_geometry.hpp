@@ -36,7 +36,7 @@ class HullOutline {
 /// A hull that moves. Its velocity turns with `turn_radps`, and the hull with it.
 struct MovingHull {
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
-  double turn_radps = 0.0;  // counter-clockwise seen from above; 0 where it goes straight
+  double turn_radps = 0.0;  // counter-clockwise seen from above; 0 where the thing goes straight
 };
 
 struct ApproachQuestion {

@@ -17,7 +17,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kLooksUs = 500'000;
 // A danger may be out of sight, or above the limit, for some scans.
 constexpr std::int64_t kGapUs = 400'000;
-// Of the zone's sector, to each side: edges of a sector are no edges of a danger.
+// Margins to each side of the zone's sector: edges of a sector are no edges of a danger.
 constexpr double kRightBesideRad = DegToRad(5.0);
 constexpr double kFarBesideRad = DegToRad(15.0);
 constexpr double kOtherSideRad = DegToRad(60.0);
@@ -320,7 +320,7 @@ void AlertJudge::CountStanding(const AlertScan& scan, double passed_s) {
 
 void AlertJudge::FollowDangers(const AlertScan& scan) {
   for (const auto& one : evaluated_) FollowDanger(scan, one, watched_[one.thing->id]);
-  // Of things that the truth knows no more, too.
+  // Dangers of things that the truth no longer knows are closed, too.
   for (auto& [id, watched] : watched_) {
     if (watched.danger && SecondsOf(scan.utime_us - watched.wanted.last_us) > kOneDangerS) CloseDanger(watched, scan.utime_us);
   }

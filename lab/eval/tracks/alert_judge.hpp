@@ -53,20 +53,20 @@ class AlertJudge {
   struct Look {
     std::int64_t utime_us = 0;
     TrueApproach approach;
-    double zone_m = 0.0;       // the nearest of it in the zone's sector, from the reference point; infinite: nothing
+    double zone_m = 0.0;       // the nearest point of the thing in the zone's sector, from the reference point; infinite: nothing
     double wide_zone_m = 0.0;  // in a wider sector
   };
   struct Evaluated {
     const AlertThing* thing = nullptr;
     Look look;
-    double bearing_rad = 0.0;  // of its nearest point
+    double bearing_rad = 0.0;  // of the thing's nearest point
   };
   // An alert while it holds.
   struct Episode {
     AlertVerdict verdict = AlertVerdict::kNothing;
     AlertEvent event;
     bool is_warning = false;
-    bool is_in_berth = false;  // when it came up
+    bool is_in_berth = false;  // when the alert came up
   };
   // The telling of a thing by an alert.
   struct Told {
@@ -127,7 +127,7 @@ class AlertJudge {
   bool has_run_in_ = false;
   std::vector<Evaluated> evaluated_;          // of this scan
   std::map<int, std::deque<Look>> looks_;     // by thing: of the last scans
-  std::map<std::int64_t, Episode> episodes_;  // by alert: those that hold
+  std::map<std::int64_t, Episode> episodes_;  // by alert: alerts that hold
   std::vector<Told> told_;                    // of the last seconds
   std::map<int, std::int64_t> teller_of_;     // by thing: the alert that tells it in this scan
   std::map<int, Watched> watched_;            // by thing

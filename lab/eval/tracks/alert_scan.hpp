@@ -28,7 +28,7 @@ struct JudgedAlert {
   bool is_warning = false;               // else a caution
   bool holds = false;                    // active or acknowledged: not over
   bool is_open = false;                  // holds, and nobody has acknowledged it
-  bool sounds = false;                   // it is the one that ALERTS let sound
+  bool sounds = false;                   // the alert is the one that ALERTS let sound
   std::int64_t track_id = 0;             // 0 = of none: land, or a thing without a track
   std::optional<AlertTrackPlace> track;  // where TRACKS had it last; nullopt: they never did
   double distance_m = 0.0;               // told: from the own hull, of a zone from the reference point
@@ -39,7 +39,7 @@ struct JudgedAlert {
 /// A true object after a scan.
 struct AlertThing {
   int id = 0;     // 1, 2, ...
-  int group = 0;  // the same for pieces of land and structures that belong together; else the id
+  int group = 0;  // equal for pieces of land and structures that belong together; else the id
   std::string name;
   std::string kind;
   bool is_in_water = false;  // a boat, swimmer, buoy, marker; all else is land, or a structure
@@ -51,7 +51,7 @@ struct AlertThing {
 /// The own boat after a scan.
 struct AlertOwnBoat {
   Polygon hull_m;
-  Eigen::Vector2d reference_m = Eigen::Vector2d::Zero();  // its reference point
+  Eigen::Vector2d reference_m = Eigen::Vector2d::Zero();  // reference point of the own boat
   double heading_rad = 0.0;                               // from north clockwise
   MovingHull motion;
 };

@@ -13,7 +13,7 @@
 
 namespace lookout::eval {
 
-/// Of an alert when it comes up. ALERTS.md defines each.
+/// Verdict on an alert when it comes up. ALERTS.md defines each.
 enum class AlertVerdict { kRight, kBorder, kFar, kNothing, kRepeated };
 inline constexpr std::size_t kNumAlertVerdicts = 5;
 std::string_view NameOf(AlertVerdict verdict);
@@ -23,7 +23,7 @@ enum class AlertFault { kNone, kPieceMoves, kStandingMoves, kOtherCourse, kNothi
 inline constexpr std::size_t kNumAlertFaults = 8;
 std::string_view NameOf(AlertFault fault);
 
-/// Of a danger.
+/// Verdict on a danger.
 enum class DangerVerdict { kInTime, kLate, kMissed };
 inline constexpr std::size_t kNumDangerVerdicts = 3;
 std::string_view NameOf(DangerVerdict verdict);
@@ -47,7 +47,7 @@ struct AlertEvent {
   AlertFault fault = AlertFault::kNone;
   double true_speed_mps = std::numeric_limits<double>::quiet_NaN();  // over ground
   double told_speed_mps = std::numeric_limits<double>::quiet_NaN();
-  double existence_probability = std::numeric_limits<double>::quiet_NaN();  // of its track
+  double existence_probability = std::numeric_limits<double>::quiet_NaN();  // of the alert's track
   std::string text;
 };
 
@@ -58,7 +58,7 @@ struct AlertScores {
 
   /// By level (caution, warning: the graver that the alert had while it held) and verdict.
   std::array<std::array<std::int64_t, kNumAlertVerdicts>, 2> num_alerts{};
-  /// Those that are far, nothing or repeated.
+  /// Causes of alerts that are far, nothing or repeated.
   std::array<std::array<std::int64_t, kNumAlertFaults>, kNumAlertVerdicts> num_faults{};
   /// While the own boat stood: how long, and alerts that came up then and are far or nothing.
   double berth_s = 0.0;

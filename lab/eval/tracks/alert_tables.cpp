@@ -77,7 +77,7 @@ NamedTable LeftOutTable(const std::vector<AlertRow>& rows) {
   return {"alerts_left_out", "alerts: what is left out, since the truth does not know it", std::move(table)};
 }
 
-// Of each world: why alerts are false or repeated, the most frequent first.
+// Why alerts of each world are false or repeated, the most frequent cause first.
 NamedTable FaultTable(const std::vector<AlertWorld>& worlds) {
   Table table({"world", "cause", "far", "nothing", "repeated", "of_false_%", "of_repeated_%", "most in"});
   for (const auto& world : worlds) {

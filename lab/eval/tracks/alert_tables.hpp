@@ -25,7 +25,7 @@ struct AlertWorld {
 /// One row of each scene: runs of one are added. Order: as they come first.
 std::vector<AlertRow> AddUpAlerts(const std::vector<AlertRow>& runs);
 
-/// Targets first, then the scenes, and behind those of a world one row over all of them. The same tables, without rows, of no world.
+/// Targets first, then the scenes, and behind the scenes of a world one row over all of them. Without a world the tables are there without rows.
 std::vector<NamedTable> AlertTablesOf(const std::vector<AlertWorld>& worlds);
 
 /// Header and a row of a list of events, as CSV.

@@ -17,11 +17,11 @@ class MultiObjectTracker {
   MultiObjectTracker& operator=(const MultiObjectTracker&) = delete;
   virtual ~MultiObjectTracker() = default;
 
-  /// As it stands in tables.
+  /// Name of the tracker in tables.
   virtual std::string name() const = 0;
 
-  /// @param scan  the next one, with all parts of its OBSTACLES; those of status OK are on the map
-  /// @return its tracks at the end of the scan
+  /// @param scan  the next one, with all parts of its OBSTACLES; obstacles of status OK are on the map
+  /// @return the tracker's tracks at the end of the scan
   virtual std::vector<TrackState> Update(const messages::ScanMessages& scan) = 0;
 };
 

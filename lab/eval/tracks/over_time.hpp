@@ -18,11 +18,11 @@ namespace lookout::eval {
 /// In tables.
 inline constexpr std::string_view kOverTime = "ours over time";
 
-/// Lets all services run on the sensors' messages of a boat, scan after scan, and keeps the label of each return: that of the track of its piece.
+/// Lets all services run on the sensors' messages of a boat, scan after scan, and keeps the label of each return: the track of its piece.
 /// Land is no track, and returns that no track explains are none either: both keep the label of their segment, so that each island is compared with
 /// its own.
 ///
-/// A run begins without any history: its first scans have the labels of SEGMENTS. Its time is that of the whole boat and not stated.
+/// A run begins without any history: its first scans have the labels of SEGMENTS. Its time would be that of the whole boat, and is not stated.
 class OverTimeMethod final : public Method {
  public:
   /// Sends the sensors' messages in the run of a scan. @return false: there is no such run, and its scans are not labelled

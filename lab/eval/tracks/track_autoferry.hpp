@@ -22,7 +22,7 @@ inline constexpr double kSwitchRangeM = 100.0;
 
 struct FerryScores {
   std::array<Gospa, kFerryRangesM.size()> gospa;  // as kFerryRangesM; over all scans
-  /// Over the scans in which a boat truly is within the range. One that is far off in most scans says little of a tracker near by.
+  /// Over the scans in which a boat truly is within the range. A boat that is far off in most scans tells little about a tracker near by.
   std::array<Gospa, kFerryRangesM.size()> with_boat;
   std::int64_t num_switches = 0;
 

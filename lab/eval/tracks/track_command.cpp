@@ -41,7 +41,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of the returns of the chain's scans, at least so many are in the truth: else the two do not belong together.
+// Least share of the returns of the chain's scans that are in the truth: with fewer the two do not belong together.
 constexpr double kLeastJoined = 0.99;
 
 ApproachLimits LimitsOf(const fs::path& config_folder) {
@@ -128,7 +128,7 @@ std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string&
   return rows;
 }
 
-// Of one run.
+// Writes the events of one run.
 void WriteEvents(const std::vector<TrackRow>& rows, std::uint64_t seed, const Truth& truth, std::ostream& out) {
   constexpr std::array<std::string_view, 6> kNames{"missed", "false", "switch", "moving", "standing", "approach"};
   for (const auto& [scene, row] : rows) {
@@ -216,7 +216,7 @@ std::vector<TrackRow> RunCaptures(const TrackOptions& options, const fs::path& f
   return runs;
 }
 
-// Targets first, then the scenes, and behind those of a world one row over all of them.
+// Targets first, then the scenes, and behind the scenes of a world one row over all of them.
 std::vector<NamedTable> AllTablesOf(const TrackOptions& options, const std::vector<TrackWorld>& worlds) {
   std::vector<TrackRow> rows;
   std::vector<TrackRow> overall;

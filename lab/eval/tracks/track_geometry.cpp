@@ -46,7 +46,7 @@ Approach ApproachOf(const Polygon& own_m, const Vector2d& own_mps, const Polygon
   double end_s = kMaxLookAheadS;
   for (int i = 0; i < kNumHalvings && end_s - begin_s > 1e-5; ++i) {
     const double third_s = (end_s - begin_s) / 3.0;
-    // Of equals the earlier: where they touch, the first time is looked for below.
+    // At equal gaps the earlier time is kept: where the hulls touch, the first time is looked for below.
     if (gap_at(begin_s + third_s) <= gap_at(end_s - third_s)) {
       end_s -= third_s;
     } else {

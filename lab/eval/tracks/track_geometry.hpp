@@ -17,7 +17,7 @@ struct Approach {
   double tcpa_s = 0.0;  // 0 where they part; where they will touch, the first time at which they do
 };
 
-/// Both keep course and speed and do not turn. Convex hulls count. Beyond kMaxLookAheadS nothing is looked for.
+/// Both hulls keep course and speed and do not turn. Convex hulls count. Beyond kMaxLookAheadS nothing is looked for.
 /// Found by halving intervals: the gap of two convex sets that move straight is a convex function of time. Error: below 1 mm, 1 ms.
 Approach ApproachOf(const Polygon& own_m, const Eigen::Vector2d& own_mps, const Polygon& other_m, const Eigen::Vector2d& other_mps);
 inline constexpr double kMaxLookAheadS = 600.0;

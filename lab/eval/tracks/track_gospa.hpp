@@ -10,7 +10,7 @@ namespace lookout::eval {
 /// Distances beyond the cut-off c count as one missed and one false; p is 2 and alpha is 2, as the measure is mostly used.
 inline constexpr double kGospaCutOffM = 20.0;
 
-/// Of one scan, in squares, so that scans can be added: metric^2 = localisation + c^2 / 2 x (missed + false).
+/// GOSPA of one scan, in squares, so that scans can be added: metric^2 = localisation + c^2 / 2 x (missed + false).
 struct Gospa {
   double localisation_m2 = 0.0;  // sum of the squared distances of pairs
   std::int64_t num_pairs = 0;

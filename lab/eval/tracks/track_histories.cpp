@@ -78,7 +78,7 @@ class SeenSides {
     });
   }
 
-  // Of the directions in which the outline lies around its centre, at most half.
+  // Whether lidar saw at most half of the directions in which the outline lies around its centre.
   bool IsHalf(const Polygon& outline_m, const Eigen::Vector2d& center_m) const {
     constexpr double kRounding = 1e-6;  // two sides of a rectangle are just half
     double seen_rad = 0.0;
@@ -274,7 +274,7 @@ struct Pass {
   std::size_t end = 0;  // first one farther off again, or as many as there are
 };
 
-// Those that begin within the run.
+// Passes that begin within the run.
 std::vector<Pass> PassesOf(const History& history, double limit_m) {
   std::vector<Pass> passes;
   const auto& moments = history.moments;

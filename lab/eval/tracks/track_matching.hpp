@@ -21,15 +21,15 @@ inline constexpr int kMinReturnsOfExpected = 5;
 /// Must be tracked in this scan.
 inline bool IsExpected(const TrueThing& thing) { return thing.is_in_water && thing.num_returns >= kMinReturnsOfExpected; }
 
-/// Of a track; where it states none, its place.
+/// Outline of a track; where the track states none, its place.
 Polygon OutlineOf(const TrackState& track);
 
-/// Of a reported track. Hit: the one track of a thing that must be tracked. Double: a further one of such a thing. Excused: of something else that
-/// is there (fewer returns, hidden, dock, pier, land), which need not be tracked. False: of nothing.
+/// Verdict on a reported track. Hit: the one track of a thing that must be tracked. Double: a further track of such a thing. Excused: a track of
+/// something else that is there (fewer returns, hidden, dock, pier, land), which need not be tracked. False: of nothing.
 enum class Verdict { kHit, kExcused, kDouble, kFalse };
 inline constexpr std::size_t kNumVerdicts = 4;
 
-/// Of one scan.
+/// Matches of one scan.
 struct Matched {
   std::map<int, const TrackState*> track_of;                         // by id of the thing, also of one that need not be tracked
   std::map<std::int64_t, Verdict> verdict_of;                        // of reported tracks, by id

@@ -119,7 +119,7 @@ void ScoreIdentities(std::span<const Matched> run, TrackScores& scores) {
   }
 }
 
-// The same things and tracks as in ScoreClear.
+// Uses the same things and tracks as ScoreClear.
 TrajectoryGospa TrajectoryGospaOfRun(std::span<const TrueScan> truth, std::span<const std::vector<TrackState>> tracks, std::span<const Matched> run) {
   std::vector<TrajectoryScan> scans(truth.size());
   for (std::size_t n = 0; n < truth.size(); ++n) {

@@ -121,7 +121,7 @@ struct TrackScores {
 
   std::vector<TrackEvent> events;  // in the order of time; Add leaves those of the other out
 
-  /// Both 0 to 1 (MOTA also below 0); NaN where nothing had to be tracked.
+  /// MOTA and IDF1, 0 to 1 (MOTA also below 0); NaN where nothing had to be tracked.
   double Mota() const;
   double Idf1() const;
   double FalseTracksPerHour() const;

@@ -74,7 +74,7 @@ class TrackRun {
 
   std::int64_t num_scans() const { return static_cast<std::int64_t>(truth_scans_.size()); }
   bool has_own_tracks() const { return own_.front().has_come; }
-  /// Of the returns of these scans, the share that is in the truth; NaN where it holds none.
+  /// Share of the returns of these scans that is in the truth; NaN without returns.
   double JoinedShare() const { return static_cast<double>(num_joined_) / static_cast<double>(num_returns_); }
 
  private:

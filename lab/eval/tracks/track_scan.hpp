@@ -35,7 +35,7 @@ struct TrueScan {
   std::optional<TrueBoat> own;
 };
 
-/// Numbers are those of track_t.
+/// The numbers are those of track_t.
 enum class TrackStatus : std::int32_t { kTentative = 1, kConfirmed = 2, kCoasting = 3, kLost = 4 };
 
 /// A track at the end of a scan, as a tracker states it.
@@ -44,8 +44,8 @@ struct TrackState {
   TrackStatus status = TrackStatus::kTentative;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
-  bool is_moving = false;                                // the tracker says that it moves
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  // of position and velocity; NaN = it states none
+  bool is_moving = false;                                // the tracker says that the track moves
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  // of position and velocity; NaN = not stated
   Polygon outline_m;                                     // empty: the position alone is known
   std::vector<std::int32_t> segment_ids;                 // of this scan, that it explains
   /// Closest approach to the own boat, hull to hull; NaN = it states none.

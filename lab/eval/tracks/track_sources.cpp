@@ -90,7 +90,7 @@ fs::path Beside(const CaptureWithTruth& files, const std::string& ending) {
   return files.capture.parent_path() / (files.scene + "-" + std::to_string(files.seed) + ending);
 }
 
-// Of objects that are no rectangles; they stand.
+// Outlines of objects that are no rectangles; these objects stand.
 std::map<int, Polygon> ReadShapes(const fs::path& file) {
   std::map<int, Polygon> shapes;
   data::CsvFile csv(file, {"object_id", "east", "north"});

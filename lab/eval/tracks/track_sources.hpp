@@ -17,7 +17,7 @@
 
 namespace lookout::eval {
 
-/// Options that the judging of tracks and that of alerts share.
+/// Options that the commands for tracks and for alerts share.
 struct RunOptions {
   std::filesystem::path config_folder;
   RunPlan plan;                                    // scenes may be none
@@ -58,7 +58,7 @@ using ScanMessageHandler = std::function<void(Utime time, const std::vector<lida
 void SimulateRun(const std::filesystem::path& config_folder, const std::filesystem::path& scene_file, std::uint64_t seed, double seconds,
                  Truth& truth, const DatagramHandler& on_datagram, const ScanMessageHandler& on_scan = {}, const std::string& lidar = {});
 
-/// The same truth without the run: objects and outlines alone.
+/// The truth of SimulateRun without a run: objects and outlines alone.
 void AddSceneTruth(const std::filesystem::path& config_folder, const std::filesystem::path& scene_file, std::uint64_t seed, double seconds,
                    Truth& truth);
 
@@ -80,7 +80,7 @@ void SendCapture(const CaptureWithTruth& files, const DatagramHandler& on_datagr
 /// @throws std::runtime_error "file:line: reason"
 void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram);
 
-/// The same without the objects of returns: no .truth.csv.xz need be there.
+/// ReadRun without the objects of returns: no .truth.csv.xz need be there.
 void ReadRunOfObjects(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram);
 
 /// As .objects.csv.xz counts them, scan by scan; nothing where it has none of that time.

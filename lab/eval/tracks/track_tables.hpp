@@ -17,11 +17,11 @@ struct TrackRow {
 
 /// One row of each scene and tracker: runs of one are added. Order: as they come first.
 std::vector<TrackRow> AddUp(const std::vector<TrackRow>& runs);
-/// The same over all scenes, called `name`; labels are means over the scenes.
+/// Rows over all scenes, called `name`; labels are means over the scenes.
 std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::string& name);
 
 std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows);
-/// What most changes where a part of the tracker is left out: a line of each row.
+/// The figures that change most where a part of the tracker is left out: a line for each row.
 NamedTable AblationTable(const std::vector<TrackRow>& rows);
 /// Labels alone, of runs with evidence that does not know their scene.
 NamedTable LeftOutTable(const std::vector<TrackRow>& rows);

@@ -19,7 +19,7 @@ using MapOrigin = std::array<double, 3>;
 /// Objects of a truth, as IsLand asks for them.
 std::map<std::int32_t, data::ScanObject> ObjectsOf(const Truth& truth);
 
-/// Where a map frame lies on the earth: its origin, and the direction of its y axis, clockwise from north. That of POSE on the earth has 0.
+/// Where a map frame lies on the earth: its origin, and the direction of its y axis, clockwise from north. The map frame of POSE on the earth has 0.
 struct MapPlacement {
   MapOrigin origin{};
   double y_axis_rad = 0.0;

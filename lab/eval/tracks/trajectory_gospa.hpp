@@ -20,7 +20,7 @@ struct TrajectoryScan {
   std::vector<std::pair<std::int64_t, Eigen::Vector2d>> estimates_m;
 };
 
-/// Of runs, in squares, so that runs can be added: metric^2 = that of GOSPA + gamma^2 x switches.
+/// Trajectory GOSPA of runs, in squares, so that runs can be added: metric^2 = GOSPA's metric^2 + gamma^2 x switches.
 struct TrajectoryGospa {
   Gospa scans{.num_scans = 0};
   double num_switches = 0.0;  // from one partner to another 1, from one to none or from none to one 1/2

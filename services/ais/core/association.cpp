@@ -99,7 +99,7 @@ std::vector<Identity> Association::Update(Utime time, std::span<const ShipInReac
       AddEvidence({ships[static_cast<std::size_t>(i)].ship->mmsi, tracks[static_cast<std::size_t>(k)].id}, probability(i, k), step_s);
     }
   }
-  // Of a ship that is gone, or a track that has ended, nothing is left.
+  // Pairs of a ship that is gone, or of a track that has ended, are forgotten.
   std::erase_if(pairs_, [&](const auto& entry) {
     const auto& [mmsi, track_id] = entry.first;
     const bool is_there = std::ranges::binary_search(ships, mmsi, {}, [](const auto& ship) { return ship.ship->mmsi; }) &&

@@ -29,12 +29,12 @@ struct ShipInReach {
   PredictedShip predicted;
 };
 
-/// What is known of a ship: the track that it is, or most likely is.
+/// Which track a ship is, or most likely is.
 struct Identity {
   std::int32_t mmsi = 0;
   std::int64_t track_id = 0;      // 0: none is likely
-  double probability = 0.0;       // that it is this track
-  double none_probability = 1.0;  // that it is none of the tracks
+  double probability = 0.0;       // that the ship is this track
+  double none_probability = 1.0;  // that the ship is none of the tracks
   bool is_sure = false;
 };
 

@@ -14,7 +14,7 @@
 namespace lookout::ais {
 
 struct SightParams {
-  double range_m = 50.0;     // a hull of any ship is seen within it
+  double range_m = 50.0;     // the lidar sees the hull of any ship within this range
   double min_range_m = 1.0;  // of the segmenter
   Sector field_of_view;      // of the segmenter, lidar frame, counter-clockwise from its x axis
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();

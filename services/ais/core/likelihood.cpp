@@ -22,7 +22,7 @@ constexpr double kBeamSdM = 0.6;
 constexpr double kBeamSdShare = 0.1;
 constexpr double kUsualLengthsM = 20.0;  // any other thing has a length and a width within so much
 constexpr double kUsualBeamsM = 6.0;
-// Of a thing that was seen by less, the size is a lower bound alone.
+// Seen share of a track's outline from which on its size is known; below, the size is a lower bound alone.
 constexpr double kWellSeenShare = 0.45;
 
 // Headings: one in eight is wrong.

@@ -20,7 +20,7 @@ struct TrackedThing {
   double length_m = kNan;
   double width_m = kNan;
   double length_bearing_rad = kNan;  // from true north, clockwise, 0 to pi
-  double seen_share = 0.0;           // of its outline
+  double seen_share = 0.0;           // of the track's outline, 0 to 1
   std::vector<Eigen::Vector2d> outline_map_m;
 };
 
@@ -29,13 +29,13 @@ struct Background {
   double tracks_per_m2 = 0.0;
 };
 
-/// Of the mean distance between a track and the place where the ship says it is.
+/// Log odds of the mean difference between a track and the place where the ship says it is.
 double PositionLogOdds(const Eigen::Vector2d& mean_difference_m, const PredictedShip& ship, const TrackedThing& track, const Background& background);
-/// Of length and beam, where both know them.
+/// Log odds of length and beam, where both ship and track know them.
 double ShapeLogOdds(const Dimensions& dimensions, const TrackedThing& track);
-/// Of the direction of the hull, where both know it.
+/// Log odds of the direction of the hull, where both ship and track know it.
 double HeadingLogOdds(const PredictedShip& ship, const TrackedThing& track);
-/// Of course and speed.
+/// Log odds of course and speed.
 double VelocityLogOdds(const PredictedShip& ship, const TrackedThing& track);
 
 }  // namespace lookout::ais

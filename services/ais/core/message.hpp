@@ -47,10 +47,10 @@ struct Dimensions {
   double beam_m() const { return port_m + starboard_m; }
 };
 
-/// What is said of the ship; each that is absent was not said by this message.
+/// Facts about the ship that do not change under way; an absent member was not in this message.
 struct StaticReport {
   std::optional<std::string> name;       // printable ASCII; empty: not available
-  std::optional<std::string> call_sign;  // the same
+  std::optional<std::string> call_sign;  // printable ASCII; empty: not available
   std::optional<int> ship_type;          // 0 to 255; 0: not available
   std::optional<Dimensions> dimensions;
 };
@@ -58,7 +58,7 @@ struct StaticReport {
 /// One message.
 struct Message {
   int type = 0;
-  int repeat = 0;  // how often it was relayed
+  int repeat = 0;  // how often the message was relayed
   std::int32_t mmsi = 0;
   Sender sender = Sender::kUnknown;
   std::optional<PositionReport> position;
@@ -68,8 +68,8 @@ struct Message {
 
 enum class MessageFault {
   kNone,
-  kOtherType,  // no fault: a message that says nothing of these
-  kTooShort,   // or of a length that its type has not: gpsd's limits
+  kOtherType,  // no fault: a message of a type that says nothing of position or ship
+  kTooShort,   // or of a length that its type does not have: gpsd's limits
   kBadMmsi,    // 0, or above 999 999 999
   kBadPlace,   // a latitude above 91 degrees or a longitude above 181, which even "not available" is not
   kBadPart,    // of message 24: neither A nor B

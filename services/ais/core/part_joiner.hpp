@@ -54,11 +54,11 @@ class PartJoiner {
   // source, whether VDO, channel, sequence number
   using Key = std::tuple<std::string, bool, std::string, int>;
   struct Open {
-    Utime time;  // of its first part
+    Utime time;  // of the message's first part
     int num_parts = 0;
     int num_here = 0;
     Payload payload;
-    std::string head;       // the armour of its first part
+    std::string head;       // the armour of the message's first part
     bool is_mixed = false;  // with another message
   };
   struct Part;

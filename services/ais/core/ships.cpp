@@ -107,7 +107,7 @@ double FixVariance(const PositionReport& report) {
   return sd_m * sd_m + report.resolution_m * report.resolution_m / 12.0;
 }
 
-// Of the way since the fix: error of its time, of speed and course, and what the ship does meanwhile.
+// Covariance of the way since the fix: errors of the fix's time, of speed and course, and manoeuvres of the ship meanwhile.
 Eigen::Matrix2d WayCovariance(const Ship::Fix& fix, const Eigen::Vector2d& velocity_mps, double age_s) {
   if (!velocity_mps.allFinite()) {
     const double sd_m = std::min(kUnknownSpeedSdMps * (age_s + kUnknownTimeSdS), kMostWaySdM);
@@ -275,7 +275,7 @@ void Ships::AdvanceTo(Utime time) {
     return true;
   });
   counts_["ships_silent"] += static_cast<std::int64_t>(num_silent);
-  // What else they say makes an old place no newer.
+  // A ship that still sends other messages keeps an old position no longer than a silent ship.
   for (auto& [mmsi, ship] : ships_) {
     if (!ship.fix || time - ship.fix->arrival <= LongestSilence(ship)) continue;
     ++counts_["positions_silent"];

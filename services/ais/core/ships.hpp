@@ -26,7 +26,7 @@ struct Ship {
   std::string call_sign;  // empty: not known
   int ship_type = 0;      // 0: not known
   Dimensions dimensions;
-  Utime heard;  // arrival of its last message
+  Utime heard;  // arrival of the ship's last message
 
   // The last position, with course, speed and heading as they were then. Absent: it has told none for long.
   struct Fix {
@@ -44,12 +44,13 @@ struct Ship {
 /// A ship's place at a time, in a map frame.
 struct PredictedShip {
   Eigen::Vector2d antenna_map_m = Eigen::Vector2d::Zero();
-  Eigen::Vector2d center_map_m = Eigen::Vector2d::Zero();   // of the hull; the antenna where the offset is not known
-  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();  // of the centre: the error of the fix, of its time, of the way since, and of the offset
-  double offset_m = 0.0;                                    // from antenna to centre
+  Eigen::Vector2d center_map_m = Eigen::Vector2d::Zero();  // of the hull; the antenna where the offset is not known
+  Eigen::Matrix2d covariance_m2 =
+      Eigen::Matrix2d::Zero();  // of the centre: error of the fix, of its time, of the way since, and of the antenna's offset
+  double offset_m = 0.0;        // from antenna to centre
   Eigen::Vector2d velocity_map_mps = Eigen::Vector2d::Constant(kNan);  // NaN: not known
   double velocity_sd_mps = kNan;
-  double bow_rad = kNan;  // direction of the bow from true north, clockwise: heading, else the course of one that moves; NaN: not known
+  double bow_rad = kNan;  // direction of the bow from true north, clockwise: heading, else the course of a ship that moves; NaN: not known
   Eigen::Vector2d bow_map = Eigen::Vector2d::Constant(kNan);  // the same, along the axes of the map
   bool is_bow_measured = false;
   double age_s = 0.0;  // since the measurement
@@ -69,7 +70,7 @@ class Ships {
  public:
   /// Beyond, the ship that was heard least lately is forgotten, first of those without a place. A busy strait has some hundreds in reach.
   static constexpr std::size_t kMostShips = 2000;
-  /// Of a report that does not tell its second.
+  /// Delay of a report that does not tell its second.
   static constexpr std::chrono::milliseconds kUsualLatency{2000};
 
   /// @param own_mmsi  of the own transponder; 0: the one that VDO tells

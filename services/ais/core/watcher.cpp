@@ -153,7 +153,7 @@ void Watcher::Tell(const TracksOfScan& scan, const Pose& own, Picture& picture) 
   }
 
   if (picture.ships.size() <= kMostTold) return;
-  // Those that are farthest away are left out; of equal ranges those with the greater MMSI.
+  // Ships that are farthest away are left out; at equal ranges ships with the greater MMSI.
   counts_["ships_untold"] += static_cast<std::int64_t>(picture.ships.size() - kMostTold);
   std::ranges::stable_sort(picture.ships, {}, [](const auto& ship) { return std::isnan(ship.range_m) ? 1e9 : ship.range_m; });
   picture.ships.resize(kMostTold);

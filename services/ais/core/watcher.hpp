@@ -24,7 +24,7 @@ struct Item {
   Utime time;             // arrival
   bool is_start = false;  // the navigator began anew: what was heard before is void
   std::string source;
-  std::string sentence;  // of a sentence
+  std::string sentence;  // not of a start mark
 };
 
 /// TRACKS of one scan.
@@ -37,7 +37,7 @@ struct TracksOfScan {
   Utime begin_time;
   Datum datum;
   std::vector<TrackedThing> tracks;                     // confirmed ones, by id
-  std::optional<std::vector<Eigen::Vector2d>> shore_m;  // where this scan tells it
+  std::optional<std::vector<Eigen::Vector2d>> shore_m;  // only of a scan that tells the shore
 };
 
 /// The numbers of ais_t: why tracks and ships were compared, or why not.
@@ -48,11 +48,11 @@ enum class ShipState { kNotInSight = 0, kTracked = 1, kUnsure = 2, kAisOnly = 3 
 struct ShipInPicture {
   Ship ship;
   GeodeticPlace place;                     // of the antenna, propagated
-  std::optional<PredictedShip> predicted;  // without it the position is not usable, or there is no map
+  std::optional<PredictedShip> predicted;  // nullopt: the position is not usable, or there is no map
   double range_m = kNan;                   // from the own reference point to the middle of the hull
   double bearing_rad = kNan;               // from the bow, clockwise
   ShipState state = ShipState::kNotInSight;
-  std::int64_t track_id = 0;  // kTracked: the track that it is. kUnsure: the likeliest. Else 0
+  std::int64_t track_id = 0;  // kTracked: the track that the ship is. kUnsure: the likeliest track. Else 0
   double probability = 0.0;   // of track_id
 };
 
@@ -111,8 +111,8 @@ class Watcher {
   Ships ships_;
   Association association_;
   std::vector<Identity> identities_;         // of the last scan with a position, by MMSI
-  std::map<std::int32_t, double> unseen_s_;  // by MMSI: for how long it should have been seen and was not
-  std::vector<Eigen::Vector2d> shore_m_;     // as it was told last
+  std::map<std::int32_t, double> unseen_s_;  // by MMSI: for how long the ship should have been seen and was not
+  std::vector<Eigen::Vector2d> shore_m_;     // as the last scan that had it told it
   std::optional<MapKey> map_;                // of the scan before
   std::optional<Utime> last_time_;
   bool has_heard_ = false;

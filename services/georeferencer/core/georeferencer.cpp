@@ -47,7 +47,8 @@ std::vector<ObstaclePart> Georeferencer::AddPose(const Pose& pose) {
       return released;
     }
     if (pose.time < newest->time) {
-      // A new run, in the past of the one before. Segments that wait and lie so far ahead of it belong to the old run.
+      // A new run of the navigator begins, in the past of the run before. Waiting segments farther ahead than PoseHistory::kLength belong to the old
+      // run.
       ++counts_["pose_restarts"];
       while (!waiting_.empty() && waiting_.front().part.head.time - pose.time > PoseHistory::kLength) {
         ++counts_["parts_flushed"];

@@ -17,7 +17,7 @@
 
 namespace lookout::georeferencer {
 
-/// Its output depends on the order of the segments and on that of the poses, not on how the two interleave, as long as host time is kept out
+/// The output depends on the order of the segments and on the order of the poses, not on how the two interleave, as long as host time is kept out
 /// (AdvanceTo is not called), POSE does not go back in time (navigator starts again in the past), and runs ahead by less than
 /// PoseHistory::kLength, or segments by less than kMaxWaiting.
 class Georeferencer {
@@ -35,7 +35,7 @@ class Georeferencer {
   /// Each of these returns the segments that can be released now, in the order in which they came.
   std::vector<ObstaclePart> AddSegments(SegmentPart part);
   std::vector<ObstaclePart> AddPose(const Pose& pose);
-  /// Of the second lidar: they go out as further parts of the scan of the first during which they were seen.
+  /// Segments of the second lidar go out as further parts of the scan of the first lidar during which they were seen.
   std::vector<ObstaclePart> AddSecond(const SegmentPart& part);
 
   /// Live only. Segments that have waited for longer than the time-out by the host's clock are released, and all of them while POSE has not come for
@@ -48,7 +48,7 @@ class Georeferencer {
   std::int64_t num_waiting() const { return static_cast<std::int64_t>(waiting_.size()); }
   const PoseHistory& poses() const { return poses_; }
   std::vector<Counter> counters() const;
-  /// Segments of the second lidar that were dropped since its time does not fit that of the first.
+  /// Segments of the second lidar that were dropped because the times of the two lidars do not fit.
   std::int64_t num_untimely() const { return second_.num_untimely(); }
   /// Host time of the last release by time-out.
   std::optional<Utime> last_timeout() const { return last_timeout_; }
@@ -70,7 +70,7 @@ class Georeferencer {
   void Place(const Segment& segment, bool has_timed_out, const PlacementParams& placement, ObstaclePart& placed);
   void ReleaseReady(std::vector<ObstaclePart>& released);
 
-  // Of the scan that is being released: the parts that the second lidar adds to it.
+  // Parts that the second lidar adds to the scan that is being released.
   struct Further {
     ScanHead head;  // of the scan's first part
     std::vector<std::vector<Segment>> parts;
@@ -86,7 +86,7 @@ class Georeferencer {
   PoseHistory poses_;
   std::deque<Waiting> waiting_;
   std::optional<Utime> host_time_;
-  std::optional<Utime> pose_arrival_;  // host time of the last, or from when on it is known
+  std::optional<Utime> pose_arrival_;  // host time of the last pose; before any pose, since when host time is known
   std::optional<Utime> last_timeout_;
   std::int64_t num_second_silent_ = 0;  // scans of the first
   std::int64_t num_second_holes_ = 0;

@@ -17,22 +17,22 @@ struct HullVertex {
   Utime time;
 };
 
-// Numbers of both are those of the wire.
+// Both enumerations have the numbers of the wire.
 enum class Confidence : std::int32_t { kTentative = 1, kSure = 2 };
 enum class Kind : std::int32_t { kObstacle = 0, kLand = 1 };
 
 /// How the segmenter rates a segment; its obstacle repeats it.
 struct Rating {
   Confidence confidence = Confidence::kSure;
-  std::int32_t grounds = 0;  // bits of the wire: why it is tentative
+  std::int32_t grounds = 0;  // bits of the wire: why the segment is tentative
   Kind kind = Kind::kObstacle;
-  float thing_probability = std::numeric_limits<float>::quiet_NaN();  // 0 to 1, that it is no clutter; NaN = not stated
-  float seen_share = 1.0F;                                            // 0 to 1, of the columns from its first to its last
+  float thing_probability = std::numeric_limits<float>::quiet_NaN();  // 0 to 1, that the segment is no clutter; NaN = not stated
+  float seen_share = 1.0F;                                            // 0 to 1, of the columns from the segment's first to its last
 };
 
 /// Members that an obstacle takes from its segment.
 struct Seen {
-  Utime time;  // mean of the times of its returns
+  Utime time;  // mean of the times of the segment's returns
   std::int32_t id = 0;
   Rating rating;
   std::int32_t num_points = 0;
@@ -71,7 +71,7 @@ struct SegmentPart {
   std::int64_t num_returns = 0;  // of the columns of this part, in segments or not
 };
 
-// Numbers are those of the wire.
+// The numbers are those of the wire.
 enum class ObstacleStatus : std::int32_t { kOk = 0, kVesselFrameOnly = 1, kPoseTimeout = 2 };
 
 /// One obstacle. Members for the map are NaN, footprint_map_m and waterline_map_m are empty, unless status is kOk.
@@ -81,7 +81,7 @@ struct Obstacle : Seen {
   double longitude_deg = kNan;
   Eigen::Vector2d position_map_m = Eigen::Vector2d::Constant(kNan);
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Constant(kNan);           // east, north
-  Eigen::Matrix2d covariance_relative_m2 = Eigen::Matrix2d::Constant(kNan);  // the same without the error of the own position
+  Eigen::Matrix2d covariance_relative_m2 = Eigen::Matrix2d::Constant(kNan);  // east, north; without the error of the own position
   double top_above_water_m = 0.0;
   Eigen::Vector2d center_vessel_m = Eigen::Vector2d::Zero();
   Eigen::Vector3d nearest_vessel_m = Eigen::Vector3d::Zero();
@@ -97,7 +97,7 @@ struct Obstacle : Seen {
 /// One SEGMENTS message, placed.
 struct ObstaclePart {
   ScanHead head;
-  Datum datum;  // origin of the map frame of its obstacles
+  Datum datum;  // origin of the map frame of the obstacles
   std::vector<Obstacle> obstacles;
 };
 

@@ -60,7 +60,7 @@ std::vector<Vector3d> ToVessel(const std::vector<HullVertex>& corners, double he
   return corners_vessel_m;
 }
 
-// The same corners in the map frame, each by the pose at its own time; nullopt when one of them has none.
+// Corners of a segment in the map frame, each by the pose at its own time; nullopt when a corner has no placed pose.
 std::optional<std::vector<Vector3d>> PlaceCorners(const std::vector<HullVertex>& corners, const std::vector<Vector3d>& corners_vessel_m,
                                                   const PoseHistory& poses, const Datum& datum) {
   std::vector<Vector3d> corners_map_m;
@@ -73,7 +73,7 @@ std::optional<std::vector<Vector3d>> PlaceCorners(const std::vector<HullVertex>&
   return corners_map_m;
 }
 
-// Of the segment and of all corners; `hull` is not empty, `waterline` may be.
+// Latest of the times of the segment and of all corners; `hull` is not empty, `waterline` may be.
 Utime LastTime(Utime segment_time, const std::vector<HullVertex>& hull, const std::vector<HullVertex>& waterline) {
   Utime last_time = std::max(segment_time, std::ranges::max(hull, {}, &HullVertex::time).time);
   for (const auto& corner : waterline) last_time = std::max(last_time, corner.time);

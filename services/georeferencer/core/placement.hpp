@@ -55,17 +55,17 @@ Eigen::Vector3d FootprintCenter(const std::vector<Eigen::Vector3d>& vertices);
 /// Error: within 5 % of a Monte Carlo run for standard deviations of up to 5 degrees (property test georeferencer_covariance).
 Eigen::Matrix2d PositionCovariance(const Eigen::Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params);
 
-/// The same of the point relative to the vessel's origin, without the error of its position. Two points seen from one boat share that error, and it
-/// is not in their distance from each other or from the boat.
+/// PositionCovariance without the error of the vessel's position, for the point relative to the vessel's origin. Two points seen from one boat share
+/// that error; their distance from each other and from the boat does not contain it.
 Eigen::Matrix2d RelativeCovariance(const Eigen::Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params);
 
 /// Places a segment. p_map = T_map_vessel * T_vessel_lidar * p_lidar, each corner of outline and waterline with T_map_vessel at its own time;
 /// both lie at the mean height of the returns. Position is the centre of the outline in the map; center_vessel_m the same point, seen from the vessel
 /// at the time of the segment.
 ///
-/// @param datum  origin of the map frame; poses in another do not count
-/// @return status kOk when the pose is placed at the segment's time and at that of each corner of both; else kPoseTimeout when one of these times
-///         lies after the newest pose and `has_timed_out`, else kVesselFrameOnly. Without a pose the vessel counts as level.
+/// @param datum  origin of the map frame; poses with another datum do not count
+/// @return status kOk when the pose is placed at the time of the segment and of each corner of outline and waterline; else kPoseTimeout when one of
+///         these times lies after the newest pose and `has_timed_out`, else kVesselFrameOnly. Without a pose the vessel counts as level.
 /// Error: below 1 mm for points nearer than 200 m (property test georeferencer_round_trip).
 Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Datum& datum, bool has_timed_out, const PlacementParams& params);
 

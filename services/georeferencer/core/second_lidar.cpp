@@ -20,7 +20,7 @@ constexpr std::chrono::seconds kKept(10);
 void SecondLidar::Add(const SegmentPart& part) {
   const Utime end = part.head.end_time;
   if (!scans_.empty() && end < scans_.back().end) {
-    // It began anew in the past.
+    // The second lidar began anew in the past.
     num_dropped_ += static_cast<std::int64_t>(segments_.size());
     segments_.clear();
     scans_.clear();
@@ -28,7 +28,7 @@ void SecondLidar::Add(const SegmentPart& part) {
     seq_.reset();
   }
   NotePart(part);
-  // A scan has come whole with its last part. One whose last part was lost is covered by the next.
+  // A scan has come with its last part. A scan whose last part was lost is covered by the next scan.
   if (part.head.part_index == part.head.num_parts - 1) {
     if (!began_ || (!scans_.empty() && end - scans_.back().end > kSilence)) began_ = end;
     NoteReturns();
@@ -37,14 +37,14 @@ void SecondLidar::Add(const SegmentPart& part) {
   for (const auto& segment : part.segments) segments_.push_back(segment);
   while (scans_.size() > 1 && (end - scans_.front().end > kKept || scans_.size() > kMaxKept)) scans_.pop_front();
   while (!segments_.empty() && (end - segments_.front().time > kKept || segments_.size() > kMaxKept)) {
-    // No scan of the first came so far.
+    // No scan of the first lidar reached the time of this segment.
     if (last_taken_ && end - segments_.front().time > kKept) ++num_untimely_;
     segments_.pop_front();
     ++num_dropped_;
   }
 }
 
-// A scan is whole where all its parts came in their order, and it follows the one before.
+// A scan is whole where all its parts came in their order, directly after the last part of the scan before.
 void SecondLidar::NotePart(const SegmentPart& part) {
   const auto& head = part.head;
   if (head.part_index == 0 || seq_ != head.seq) {
@@ -59,7 +59,7 @@ void SecondLidar::NotePart(const SegmentPart& part) {
   ++next_part_;
 }
 
-// Of a scan whose last part came.
+// Called when the last part of a scan came: a dark scan is not whole.
 void SecondLidar::NoteReturns() {
   if (darkness_.Add(num_returns_, kMostStrays)) is_whole_ = false;
 }
@@ -82,7 +82,7 @@ SecondSight SecondLidar::SightDuring(Utime time, Utime end_time) {
   const auto num_whole =
       std::ranges::count_if(scans_, [end_time](const Scan& scan) { return scan.is_whole && scan.end <= end_time && scan.end > end_time - kWithin; });
   if (!IsGoingOn(end_time) || num_whole < static_cast<std::ptrdiff_t>(kWholeScans)) return SecondSight::kSilent;
-  // Of its scans those that began before this one ended count; while the first is dark, too.
+  // Scans of the second lidar count that began before this scan ended; while the first lidar is dark, also those since its last scan.
   const auto covering = std::ranges::lower_bound(scans_, end_time, {}, &Scan::end);
   const bool is_covered = covering != scans_.end() && covering->end <= end_time + kBetweenScans;
   const bool was_dark = last_taken_ && *last_taken_ < time && *last_taken_ >= time - kBetweenScans;
@@ -99,7 +99,7 @@ std::vector<Segment> SecondLidar::Take(Utime time, Utime end_time) {
   const bool is_going_on = IsGoingOn(end_time);
   const auto is_settled = [this](const Segment& segment) { return began_ && segment.time >= *began_ + kSettled; };
   for (auto& segment : segments_) {
-    const bool is_too_late = last_taken_ && segment.time <= *last_taken_;  // the scan to which it belonged is gone
+    const bool is_too_late = last_taken_ && segment.time <= *last_taken_;  // the scan to which the segment belonged has gone out
     if (segment.time > end_time) {
       kept.push_back(std::move(segment));
     } else if (!is_going_on || is_too_late || segment.time < time - kBetweenScans || taken.size() >= kMaxSegments) {

@@ -42,7 +42,7 @@ class CapturePlayer {
   /// A datagram was found: from then on there is a CaptureTime().
   bool has_begun() const { return has_begun_; }
 
-  /// The recording's time now: that of the last datagram and the time passed since; never past the next datagram.
+  /// The recording's time now: the time of the last datagram plus the time passed since then; never past the next datagram.
   Utime CaptureTime(std::chrono::microseconds elapsed) const;
 
   /// Sum over the files of CaptureReader::counters(); captures_read, capture_stamp_jumps.

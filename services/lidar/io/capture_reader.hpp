@@ -56,7 +56,7 @@ class CaptureReader {
   void OpenPcapng(const std::filesystem::path& file);
   std::optional<CapturedFrame> NextFrame();
 
-  // One of the two; what libpcap reads out of a packed file comes through `packed_`.
+  // Either `pcapng_` or `capture_` reads the file; libpcap reads a packed file through `packed_`.
   std::unique_ptr<PcapngReader> pcapng_;
   std::unique_ptr<io::UnpackedFile> packed_;
   CaptureHandle capture_;

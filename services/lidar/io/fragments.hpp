@@ -17,14 +17,14 @@ namespace lookout::lidar {
 struct Fragment {
   std::string source_address;  // numeric
   std::string destination_address;
-  std::uint32_t identification = 0;  // of the datagram, by its sender
+  std::uint32_t identification = 0;  // of the datagram, as its sender numbers it
   std::size_t offset_bytes = 0;      // behind the IP header
   bool is_last = false;
-  Bytes bytes;  // within those of the frame
+  Bytes bytes;  // refers to the bytes of the frame
 };
 
-/// RFC 791 and RFC 8200. Parts may come in any order. Parts that overlap, hold nothing, or go beyond 65 535 bytes, end their datagram. Of datagrams
-/// that never become whole the oldest make way.
+/// RFC 791 and RFC 8200. Parts may come in any order. Parts that overlap, hold nothing, or go beyond 65 535 bytes, end their datagram. Among
+/// datagrams that never become whole the oldest make room for new ones.
 class FragmentJoiner {
  public:
   static constexpr std::size_t kMaxDatagrams = 32;
@@ -44,7 +44,7 @@ class FragmentJoiner {
     std::vector<std::uint8_t> bytes;
   };
   struct Datagram {
-    Utime first;  // of its first part
+    Utime first;  // arrival of the first part
     std::string source_address;
     std::string destination_address;
     std::uint32_t identification = 0;

@@ -23,7 +23,7 @@ enum class FrameFault {
   kTruncated,  // the capture kept fewer bytes than were on the wire, and the datagram needs them
   kNotIp,
   kNotUdp,
-  kFragment,       // of an IP datagram: the rest of it is needed
+  kFragment,       // one part of an IP datagram: the other parts are needed
   kIpv6Extension,  // IPv6 with extension headers
   kBadIpHeader,    // version or header length that cannot be
   kBadLength,      // a length that goes beyond the bytes that hold it
@@ -34,12 +34,12 @@ inline constexpr std::array<std::string_view, 9> kFrameFaultNames{"frames_datagr
                                                                   "frames_bad_ip_header", "frames_bad_length", "frames_link_type"};
 
 struct Frame {
-  FrameFault fault = FrameFault::kNone;  // the rest is set when it is kNone
+  FrameFault fault = FrameFault::kNone;  // the other members are set when the fault is kNone
   std::string source_address = {};       // numeric
   int source_port = 0;
   int destination_port = 0;
   Bytes payload = {};                     // within the bytes of the frame
-  std::optional<Fragment> fragment = {};  // with kFragment alone, where its bytes are whole
+  std::optional<Fragment> fragment = {};  // with kFragment alone, where all bytes of the part were captured
   std::string destination_address = {};   // numeric
 };
 
@@ -49,16 +49,16 @@ using CaptureHandle = std::unique_ptr<pcap, void (*)(pcap*)>;
 /// Link types that are understood, by libpcap's DLT numbers: Ethernet (also VLAN-tagged, stacked), Linux cooked v1, v2, raw IP, BSD loopback.
 bool IsLinkTypeUnderstood(int link_type);
 
-/// @param link_type  DLT number; of one that is not IsLinkTypeUnderstood the fault is kLinkType
+/// @param link_type  DLT number; where not IsLinkTypeUnderstood the fault is kLinkType
 /// @param bytes      as captured
 /// @param is_cut     the frame was longer on the wire than in the capture
 ///
-/// The length that UDP says counts, where the captured bytes hold it: position packets of a real VLP-16 carry the IP length of a data packet.
+/// The length in the UDP header counts, where the captured bytes hold it: position packets of a real VLP-16 carry the IP length of a data packet.
 /// Checksums are not looked at: with checksum offload a capture holds wrong ones for good datagrams.
 /// A fragment is handed on: FragmentJoiner puts it together with the others, and ParseDatagram reads the datagram.
 Frame ParseFrame(int link_type, Bytes bytes, bool is_cut);
 
-/// Of a UDP datagram with its header, as FragmentJoiner gives it. The payload of the frame is within `bytes`.
+/// Parses a UDP datagram with its header, as FragmentJoiner gives it. The payload of the result refers to `bytes`.
 Frame ParseDatagram(Bytes bytes, std::string source_address, std::string destination_address);
 
 /// Time of a frame, as libpcap reports it when nanoseconds were asked for.

@@ -76,7 +76,7 @@ std::string LiveCapture::Open() {
   pcap_t* capture = opened.get();
   pcap_set_snaplen(capture, options_.has_large_packets ? kJumboSnapLengthBytes : kSnapLengthBytes);
   pcap_set_promisc(capture, 0);
-  pcap_set_immediate_mode(capture, 1);  // a frame is there when it comes, not when a block of the ring is full
+  pcap_set_immediate_mode(capture, 1);  // a frame can be read as soon as it comes, not only when a block of the ring is full
   pcap_set_buffer_size(capture, options_.receive_buffer_bytes);
   // A kernel that cannot is no fault: the stamps are microseconds then.
   pcap_set_tstamp_precision(capture, PCAP_TSTAMP_PRECISION_NANO);

@@ -35,8 +35,8 @@ std::string FilterFault(const std::string& filter);
 
 class LiveCapture final : public io::Source {
  public:
-  /// @throws std::runtime_error when the interface is not there or the right to capture is missing (the text says how to get it). One that is down is
-  ///         waited for
+  /// @throws std::runtime_error when the interface is not there or the right to capture is missing (the text says how to get it). An interface that
+  ///         is down is waited for
   explicit LiveCapture(LiveOptions options);
 
   /// Looks once a second: closes when the interface goes down or away, opens when it is back. Says, and counts, an outage that is over by then, too.
@@ -74,7 +74,7 @@ class LiveCapture final : public io::Source {
   LiveOptions options_;
   CaptureHandle capture_;
   int link_type_ = 0;
-  std::int64_t nanoseconds_per_fraction_ = 1;  // of a stamp, as precise as the kernel has it
+  std::int64_t nanoseconds_per_fraction_ = 1;  // of a stamp, as precise as the kernel stamps
   unsigned int interface_index_ = 0;
   io::InterfaceTimer timer_;
   bool is_empty_ = true;

@@ -27,7 +27,7 @@ constexpr std::size_t kOptionHeadBytes = 4;
 constexpr std::size_t kMostInterfaces = 65536;  // a packet of the older form numbers no more
 
 constexpr std::size_t kBlockHeadBytes = 8;   // type, length
-constexpr std::size_t kBlockEdgeBytes = 12;  // and the length once more at its end
+constexpr std::size_t kBlockEdgeBytes = 12;  // and the length once more at the block's end
 constexpr std::size_t kMaxBlockBytes = 16UL * 1024 * 1024;
 // Beyond, a second is no 64 bits of such stamps.
 constexpr unsigned int kMaxDecimalExponent = 19;
@@ -48,7 +48,7 @@ std::uint64_t NanosecondsOfDecimal(std::uint64_t fraction, unsigned int exponent
   return exponent <= kNano ? fraction * PowerOfTen(kNano - exponent) : fraction / PowerOfTen(exponent - kNano);
 }
 
-// The same in units of 2^-exponent s.
+// Nanoseconds of a fraction in units of 2^-exponent s.
 std::uint64_t NanosecondsOfBinary(std::uint64_t fraction, unsigned int exponent) {
   constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
   constexpr unsigned int kMostBits = 32;  // so that the product has 62
@@ -59,7 +59,7 @@ std::uint64_t NanosecondsOfBinary(std::uint64_t fraction, unsigned int exponent)
   return fraction * kNanosecondsPerSecond >> exponent;
 }
 
-// Numbers of link types differ from libpcap's on this computer in what some systems disagreed about: raw IP.
+// The DLT number of a link type on this computer. They differ for raw IP, about which systems disagree.
 int DltOfLinkType(int link_type) {
   constexpr int kRawIpInFiles = 101;
   return link_type == kRawIpInFiles ? DLT_RAW : link_type;
@@ -82,7 +82,8 @@ std::uint16_t PcapngReader::U16(std::size_t offset) const {
   return is_big_endian_ ? __builtin_bswap16(value) : value;
 }
 
-// Type and length; of a section also its byte order, which tells how the length is meant. @return false at the end, and where the file is damaged
+// Reads type and length of a block; of a section also its byte order, which tells how to read the length. @return false at the end, and where the
+// file is damaged
 bool PcapngReader::ReadHeader(std::vector<std::uint8_t>& header) {
   header.resize(kBlockHeadBytes);
   const auto size = file_.Read(header);
@@ -111,7 +112,7 @@ bool PcapngReader::ReadBlock() {
   if (file_.Read(std::span(body_).subspan(header.size())) < length - header.size()) {
     return Fail(file_.fault().empty() ? "the last block is cut short" : file_.fault());
   }
-  // Of a section header libpcap does not look at it either.
+  // libpcap does not check the second length of a section header either.
   if (block_type_ != kSectionHeader && U32(length - 4) != length)
     return Fail("the two lengths of a block differ: " + std::to_string(length) + ", " + std::to_string(U32(length - 4)));
   body_.resize(length - 4);
@@ -180,7 +181,7 @@ std::optional<CapturedFrame> PcapngReader::FrameOf(std::uint32_t interface, std:
   return frame;
 }
 
-// Of a block that holds a packet. @return nullopt where it is damaged
+// The frame of a block that holds a packet. @return nullopt where the block is damaged
 std::optional<CapturedFrame> PcapngReader::PacketOfBlock() {
   constexpr std::size_t kHeadBytes = 20;       // of an enhanced and of an old packet block
   constexpr std::size_t kSimpleHeadBytes = 4;  // length on the wire

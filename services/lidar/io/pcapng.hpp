@@ -18,8 +18,8 @@ namespace lookout::lidar {
 struct CapturedFrame {
   int link_type = 0;          // DLT number as libpcap has it on this computer
   Bytes bytes;                // until the next call
-  bool is_cut = false;        // it was longer on the wire
-  std::optional<Utime> time;  // nullopt: its stamp cannot be; a packet block without a stamp has time 0, as libpcap says
+  bool is_cut = false;        // the frame was longer on the wire
+  std::optional<Utime> time;  // nullopt: an impossible stamp; a packet block without a stamp has time 0, as in libpcap
 };
 
 /// Blocks as draft-ietf-opsawg-pcapng has them: sections in either byte order, one behind the other; interfaces with their own snap length,

@@ -67,7 +67,7 @@ class Exchange {
     return num_bytes;
   }
 
-  /// The same, where the connection must not end yet.
+  /// Do, where the connection must not end yet.
   template <typename Start>
   void DoWhole(const Start& start) {
     if (!Do(start)) Refuse("the answer is cut off");

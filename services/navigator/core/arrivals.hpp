@@ -20,12 +20,12 @@ class Arrivals {
   static constexpr std::chrono::milliseconds kMaxLateness{100};
   /// No buffer holds more at the rate at which it is drained: what comes faster for longer is a sensor that sends more often now.
   static constexpr std::chrono::seconds kMaxDraining{15};
-  /// An interval is learned from so many, over so long.
+  /// An interval is learned from at least this many sentences, over at least this time.
   static constexpr int kMinCount = 10;
   static constexpr std::chrono::seconds kMinLearning{1};
 
   /// @param arrival  not before the last one
-  /// @return whether it came in time, as far as is known
+  /// @return whether the sentence came in time, as far as is known
   bool Add(Utime arrival);
 
  private:
@@ -38,14 +38,15 @@ class Arrivals {
   bool has_last_ = false;
   Utime last_{};
   microseconds usual_{0};  // interval; 0 = not known yet
-  // Since when it is learned anew, and how many have come since.
+  // Since when the interval is learned anew, and how many sentences have come since.
   Utime learning_since_{};
   std::int64_t num_learned_ = 0;
-  // After a gap: how late the last one was, if it is of a queue; and how late at the begin of a while in which a queue would have become shorter.
+  // After a gap: how late the last sentence was, if a queue is drained; and how late a sentence was at the begin of a while in which a queue would
+  // have become shorter.
   bool is_queue_ = false;
   Utime drained_since_{};  // end of the last gap
   microseconds lateness_{0};
-  microseconds gap_{0};  // the last interval, where it was a gap
+  microseconds gap_{0};  // the last interval that was a gap
   Utime while_begin_{};
   microseconds lateness_at_begin_{0};
 };

@@ -22,7 +22,7 @@ std::string_view Trimmed(std::string_view text) {
 
 bool IsStart(std::string_view text) { return !text.empty() && std::string_view("$!\\").find(text.front()) != std::string_view::npos; }
 
-// One that does not end in its quotes goes to the end of the line.
+// A text whose closing quotes are missing goes to the end of the line.
 std::string QuotedText(std::string_view& rest) {
   std::string text;
   rest.remove_prefix(1);

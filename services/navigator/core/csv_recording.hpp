@@ -15,16 +15,16 @@ namespace lookout::navigator {
 /// Which columns count, from 0.
 struct CsvColumns {
   std::size_t time = 0;
-  std::optional<std::size_t> message;  // nullopt: the first that begins as a sentence does
+  std::optional<std::size_t> message;  // nullopt: the first column that begins as a sentence does
 };
 
 /// @return the columns when the line is the head of such a recording, or a row of one that has none: a time, and a field that begins as a sentence
 std::optional<CsvColumns> FindCsvColumns(std::string_view line);
 
 struct CsvRow {
-  std::optional<Utime> time;  // nullopt: it has none that can be read
-  std::string message;        // empty: the row does not reach to its column
-  bool is_sentence = false;   // begins as a sentence of NMEA 0183 or a tag block does; else it is of another protocol
+  std::optional<Utime> time;  // nullopt: the row has no readable time
+  std::string message;        // empty: the row ends before the message's column
+  bool is_sentence = false;   // begins as a sentence of NMEA 0183 or a tag block does; else the message is of another protocol
 };
 
 /// Fields may stand in double quotes, with quotes doubled in them (RFC 4180). A sentence without quotes, whose commas are none of the table, reaches

@@ -80,8 +80,8 @@ void KeepRole(Role role, Reading& reading) {
   if (!uses_all && role != Role::kImu) reading.imu.reset();
 }
 
-// A message that came before, by a way that may be slower: an autopilot may send by two. One that is older by more is of an autopilot that began
-// anew.
+// Whether a message is newer than the last one. An autopilot may send by two ways, of which one is slower: a message that is older by up to
+// kMaxLateMs came before. A message that is older by more comes from an autopilot that began anew.
 bool IsNewer(std::uint32_t boot_ms, std::optional<std::uint32_t>& last_boot_ms) {
   constexpr std::uint32_t kMaxLateMs = 5000;
   if (last_boot_ms && *last_boot_ms - boot_ms <= kMaxLateMs) return false;
@@ -211,7 +211,7 @@ Reading Interpreter::ReadUnderstood(const Item& item, Source& source, const Sent
       ReadDate(item, source, sentence);
       return {};
     case SentenceType::kGst:
-      // Of an old epoch or not: deviations change slowly.
+      // A GST of an older epoch counts too: deviations change slowly.
       source.accuracy = Accuracy{item.time, sentence};
       return {};
     case SentenceType::kRmc:

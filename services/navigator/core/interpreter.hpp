@@ -62,11 +62,11 @@ struct Reading {
 struct InterpreterParams {
   std::chrono::microseconds max_sentence_latency{0};
   double position_sd_m = 0.0;  // of a fix without correction at HDOP 1, per axis
-  // Added to the sensors' angles to give those of the vessel frame.
+  // Offsets that are added to the sensors' angles to give the angles of the vessel frame.
   double heading_offset_rad = 0.0;
   double pitch_offset_rad = 0.0;
   double roll_offset_rad = 0.0;
-  std::vector<SourceParams> sources;  // one that is not here has the defaults
+  std::vector<SourceParams> sources;  // a source that is not listed has the defaults
 };
 
 class Interpreter {
@@ -110,12 +110,12 @@ class Interpreter {
     StandingUtc standing_utc;
     std::optional<Utime> null_fix;                  // arrival of the last sentence at 0 N 0 E
     double declination_rad = kNan;                  // out of RMC
-    std::optional<Accuracy> autopilot_gps;          // its receiver's last fix, measured or not
-    std::optional<std::uint32_t> attitude_boot_ms;  // time_boot_ms of the last of each kind
+    std::optional<Accuracy> autopilot_gps;          // last fix of the autopilot's receiver, measured or not
+    std::optional<std::uint32_t> attitude_boot_ms;  // time_boot_ms of the last message of each kind
     std::optional<std::uint32_t> position_boot_ms;
     std::array<Arrivals, kNumSentenceTypes> arrivals;
     bool is_in_time = true;  // of the sentence that is read
-    // The last timed sentence by which one of a queue got its lateness; by type.
+    // The last timed sentence from which a queued sentence without a time got its lateness; by type.
     std::array<std::optional<Utime>, kNumSentenceTypes> told_by;
   };
 
@@ -142,7 +142,7 @@ class Interpreter {
   UtcClock clock_;
   std::map<std::string, Source> sources_;
   std::string last_lidar_sentence_;
-  std::optional<std::chrono::microseconds> time_scale_;  // that of the last fix: POSE less UTC
+  std::optional<std::chrono::microseconds> time_scale_;  // POSE less UTC at the last fix
 
   static constexpr auto kCountNames = std::to_array<std::string_view>(
       {"understood_sentence", "other_sentence",    "repeated_sentence",  "outside_role",           "no_checksum",       "bad_checksum",

@@ -14,7 +14,7 @@ namespace lookout::navigator {
 enum class ItemKind { kStart = 0, kSentence = 1, kImu = 2, kTick = 3, kEnd = 4 };
 
 struct Item {
-  Utime time;  // arrival; never less than that of the item before, except at a start mark
+  Utime time;  // arrival; never before that of the previous item, except at a start mark
   std::int64_t seq = 0;
   ItemKind kind = ItemKind::kTick;
   std::string source;                    // of a sentence: kUdpSource, kLidarSource, or the name of an input in config

@@ -15,7 +15,8 @@ namespace lookout::navigator {
 class ItemSequencer {
  public:
   static constexpr std::chrono::milliseconds kTickPeriod{100};
-  /// The host clock was set back when it is so much behind itself: a new start. Less than the second by which it is set back in a leap second.
+  /// The host clock was set back when it falls behind its own earlier time by this much: a new start. Less than 1 s, by which the clock is set back
+  /// in a leap second.
   static constexpr std::chrono::milliseconds kMaxSetBack{400};
   /// A sentence that came in by a queue and is so far off the last item is refused.
   static constexpr std::chrono::seconds kMaxStepBack{1};
@@ -30,10 +31,10 @@ class ItemSequencer {
   /// @param arrival  less than the last item by up to kMaxStepBack: it waited, and gets the time of the last item
   std::vector<Item> OnLines(Utime arrival, const std::vector<std::string>& lines, const std::string& source = kUdpSource);
 
-  /// A sample of an IMU that does not come as a sentence. The same as OnLines.
+  /// OnLines for a sample of an IMU that does not come as a sentence.
   std::vector<Item> OnImu(Utime arrival, const StrapdownSample& sample, const std::string& source);
 
-  /// A sentence out of the lidar. It comes late, in a bundle, so it does not move the ticks.
+  /// A sentence out of the lidar. Such a sentence comes late, in a bundle, so it does not move the ticks.
   std::vector<Item> OnLidarSentence(Utime arrival, const std::string& sentence);
 
   /// A motion of the odometer, at the time of the host clock so far.
@@ -54,7 +55,7 @@ class ItemSequencer {
   std::optional<Utime> last_;  // time of the last item
   Utime last_host_time_{};     // of the host clock itself, since the start; a lidar's sentence may be ahead of it
   Utime next_tick_{};
-  bool has_host_clock_ = false;  // AdvanceTo or OnLines told its time
+  bool has_host_clock_ = false;  // AdvanceTo or OnLines told the host's time
   std::int64_t next_seq_ = 0;
   std::int64_t num_clock_set_back_ = 0;
   std::int64_t num_stale_sentences_ = 0;

@@ -16,7 +16,7 @@ std::string_view FromStart(std::string_view line) {
   if (first == std::string_view::npos) return {};
   line.remove_prefix(first);
   if (line.front() != '\\') return line;
-  // A tag block may hold a $ of its own. One that does not end is junk.
+  // A tag block may hold a $ of its own. A tag block that does not end is junk.
   const auto block_end = line.find('\\', 1);
   line.remove_prefix(block_end == std::string_view::npos ? 1 : block_end + 1);
   const auto start = line.find_first_of("$!");
@@ -113,7 +113,7 @@ void AddLine(std::string_view whole_line, DatagramLines& result) {
     if (line.empty() && has_sentence) return;
     const auto sentence = FirstSentence(line);
     const auto begin = sentence.empty() ? 0 : static_cast<std::size_t>(sentence.data() - line.data());
-    // Of two sentences the checksum of the second may be right for both together: always, where that of the first is 7F.
+    // The checksum of a second sentence may be right for both sentences together: always so, where the first checksum is 7F.
     const bool is_followed = begin == 0 && !sentence.empty() && BeginsAnew(line.substr(sentence.size()));
     if (!is_followed && !line.empty() && IsSentence(line)) {
       result.lines.emplace_back(line);

@@ -23,12 +23,12 @@ struct DatagramLines {
   std::int64_t num_no_start = 0;       // no $ or ! in the line
   std::int64_t num_too_long = 0;       // more than kMaxLineCharacters
   std::int64_t num_not_printable = 0;  // bytes outside of 0x20 to 0x7E
-  std::int64_t num_cut_off = 0;        // begins of sentences that another one follows on the same line, and that have no right checksum
+  std::int64_t num_cut_off = 0;        // begins of sentences without a right checksum that another sentence follows on the same line
 };
 
 /// Cuts at CR and LF, and drops text before the first $ or ! of a line (tag blocks (\...\) and junk) and blanks at its end. Where the rest is no
-/// sentence with a right checksum, but holds some, one behind the other without an end of line, behind a false start, or before junk, each of them is
-/// a line.
+/// sentence with a right checksum, but holds such sentences (without an end of line between them, behind a false start, or before junk), each
+/// sentence becomes a line.
 DatagramLines SplitDatagram(Bytes payload);
 
 /// @return whether `line` is $ or !, talker and type, and a comma, whatever stands behind it
@@ -50,18 +50,18 @@ inline constexpr std::string_view kImportedSource = "imported:";
 inline constexpr std::size_t kMaxImportedSourceCharacters = 64;
 
 /// Puts lines together that their senders cut over several datagrams, as gateways from serial lines do. The end of a datagram is held back while it
-/// may go on: it begins as a line, and has neither an end of line nor a checksum. A sentence without a checksum looks like that, too: where those
-/// count it is returned at once, except for a datagram that goes on with a line itself, and once more as a part of the complete line if it does go
-/// on.
+/// may go on: it begins as a line, and has neither an end of line nor a checksum. A sentence without a checksum looks like that, too: where sentences
+/// without a checksum count, the end is returned at once, except for a datagram that goes on with a line itself, and once more as a part of the
+/// complete line if it does go on.
 class DatagramJoiner {
  public:
-  /// So long the rest may be in coming: a gateway that sends full datagrams only keeps it until the next second of a receiver.
+  /// The rest of a line may take this long: a gateway that sends only full datagrams keeps it until the next second of a receiver.
   static constexpr std::chrono::seconds kMaxWait{2};
   /// Most senders of which text is held back at once.
   static constexpr std::size_t kMaxSenders = 64;
 
   /// @param sender  address and port: lines of two senders are never joined
-  /// @return the lines that are complete now. The begin of a line that did not go on in time is one of them, so that it is recorded and counted.
+  /// @return the lines that are complete now. Begins of lines that did not go on in time are returned as well, so that they are recorded and counted.
   DatagramLines Add(Utime arrival, Bytes payload, const std::string& sender, bool requires_checksum);
 
   /// @return begins of lines that did not go on until now

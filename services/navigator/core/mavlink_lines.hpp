@@ -47,11 +47,11 @@ struct MavlinkLines {
   std::vector<std::string> lines;      // of the autopilot, checksum right
   std::int64_t num_bad_checksum = 0;   // frames
   std::int64_t num_other_sender = 0;   // frames of another system or component: right otherwise
-  std::int64_t num_skipped_bytes = 0;  // of no frame that is read: other messages, text, noise
+  std::int64_t num_skipped_bytes = 0;  // bytes outside of frames that are read: other messages, text, noise
 };
 
-/// Finds the frames of one autopilot in what one input receives: of MAVLink 1 and 2, at any place, cut over datagrams of one sender or pieces of a
-/// stream at any place. Holds at most the begin of one frame for each of kMaxSenders.
+/// Finds the frames of one autopilot (MAVLink 1 and 2) in the bytes that one input receives. Frames may begin anywhere, and may be cut anywhere over
+/// datagrams of one sender or pieces of a stream. Holds at most the begin of one frame for each of kMaxSenders.
 class MavlinkCutter {
  public:
   static constexpr int kAutopilotComponent = 1;  // MAV_COMP_ID_AUTOPILOT1
@@ -70,7 +70,7 @@ class MavlinkCutter {
  private:
   struct Held {
     std::string bytes;
-    Utime arrival;  // of the last of them
+    Utime arrival;  // of the last bytes
   };
 
   int system_id_;

@@ -31,8 +31,8 @@ constexpr double kDegPerE7 = 1e-7;
 constexpr double kMPerMm = 1e-3;
 constexpr double kMpsPerCmps = 1e-2;
 
-// Fields by their place in the payload. Source: MAVLink, common.xml; those of a message stand in the order of their sizes, the greatest first, and
-// extensions behind them, as they were added.
+// Fields by their place in the payload. Source: MAVLink, common.xml; the fields of a message stand in the order of their sizes, the greatest first,
+// then extensions in the order in which they were added.
 class Payload {
  public:
   explicit Payload(std::string_view payload) {
@@ -67,7 +67,7 @@ bool ReadAttitude(const Payload& payload, Sentence& sentence) {
 }
 
 // GLOBAL_POSITION_INT: time_boot_ms 0, latitude 4, longitude 8, height above sea 12 (mm), above home 16, velocity north 20, east 22, down 24 (cm/s),
-// heading 26 (that of ATTITUDE again).
+// heading 26 (repeats ATTITUDE's).
 bool ReadPosition(const Payload& payload, Sentence& sentence) {
   sentence.type = SentenceType::kMavPosition;
   sentence.time_boot_ms = payload.Unsigned32(0);

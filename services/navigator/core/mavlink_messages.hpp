@@ -7,10 +7,10 @@
 
 namespace lookout::navigator {
 
-/// Of ATTITUDE, GLOBAL_POSITION_INT and GPS_RAW_INT, in a line of core/mavlink_lines.hpp. A payload whose trailing zeros were not sent has them
-/// again.
+/// Parses ATTITUDE, GLOBAL_POSITION_INT and GPS_RAW_INT in a line of core/mavlink_lines.hpp. Trailing zeros of a payload that were not sent are put
+/// back.
 ///
-/// @return kBadChecksum also where that of the frame is wrong, kBadField where the line holds no frame of these messages
+/// @return kBadChecksum also where the frame's own checksum is wrong, kBadField where the line holds no frame of these messages
 ParseResult ParseMavlinkLine(std::string_view line);
 
 }  // namespace lookout::navigator

@@ -14,14 +14,14 @@ namespace lookout::navigator {
 
 /// When something was measured.
 struct MeasurementTime {
-  Utime time;     // on the time scale of POSE: UTC of the sentence where that is usable, else arrival less the known part of its delay
+  Utime time;     // on the time scale of POSE: UTC of the sentence where usable, else arrival less the known part of its delay
   Utime arrival;  // at this computer, by its clock
   bool is_from_sentence = false;
-  bool is_date_refused = false;  // its date is wrong, its time of day is right
+  bool is_date_refused = false;  // the sentence's date is wrong, its time of day is right
   // In UTC: the sentence's, also where the computer's clock is far from it; else from the arrival by the fit of the clocks.
   Utime utc = time;
   bool has_sentence_utc = false;  // utc is the sentence's
-  int num_leaps = 0;              // leap seconds through which its source went: the same UTC comes twice
+  int num_leaps = 0;              // leap seconds that the source went through: in each the same UTC comes twice
 };
 
 /// Chooses between the time in a sentence and its arrival.
@@ -33,13 +33,13 @@ struct MeasurementTime {
 MeasurementTime TimeOfMeasurement(Utime arrival, std::optional<std::chrono::microseconds> time_of_day, std::optional<std::chrono::sys_days> date,
                                   std::chrono::microseconds max_latency);
 
-/// A position fix at the antenna, out of a sentence and those before it of the same epoch.
+/// A position fix at the antenna, out of a sentence and earlier sentences of the same epoch.
 struct GnssFix : FixValues {
   MeasurementTime when;
   std::string source;              // as in Item
   std::string_view sentence_type;  // Sentence::name
   bool is_gga() const { return sentence_type == "GGA" || sentence_type == "GNS"; }
-  // The time scale of POSE was set since the fix before it: the known place is of other instants.
+  // The time scale of POSE was set since the fix before: the known place belongs to other instants.
   bool begins_time_scale = false;
 };
 

@@ -18,7 +18,7 @@ namespace lookout::navigator {
 struct NavigatorParams : InterpreterParams {
   FilterParams filter;
   bool use_lidar_odometry = true;
-  bool use_lidar_imu = true;  // of the IMU in a lidar, whose samples are turned by its mounting
+  bool use_lidar_imu = true;  // use the IMU in a lidar, whose samples are turned by the lidar's mounting
 };
 
 /// Results of one item.
@@ -77,7 +77,7 @@ class Navigator {
   PoseFilter filter_;
   RelativeFrame relative_;
   std::int64_t num_motions_ = 0;
-  std::optional<Utime> last_motion_;  // when it came
+  std::optional<Utime> last_motion_;  // arrival of the last motion
   std::optional<Utime> last_motion_ahead_;
   std::int64_t num_bad_motions_ = 0;
   std::int64_t num_motions_ahead_ = 0;

@@ -316,7 +316,7 @@ StrapdownSample Sample(FieldReader& fields, std::size_t first) {
 
 // VNINS: GPS time of week,week,status,yaw,pitch,roll,latitude,longitude,height,velocity north,east,down,sd of attitude,position,velocity.
 // Source: VectorNav VN-300 User Manual UM005, "INS Solution - LLA". Yaw from true north, pitch positive bow up, roll positive starboard down.
-// Before it tracks, or with a fault, its heading is that of its magnetometer; roll and pitch come from gravity and count.
+// Before the sensor tracks, or with a fault, its heading comes from its magnetometer; roll and pitch come from gravity and count.
 void ReadVnIns(FieldReader& fields, Sentence& sentence) {
   constexpr double kSecondsPerWeek = 7 * 86400.0;
   constexpr int kMaxWeek = 9999;
@@ -372,7 +372,7 @@ void ReadVnImu(FieldReader& fields, Sentence& sentence) {
 }
 
 struct Decoder {
-  std::string_view word;  // the address without its talker, or the whole of a proprietary one
+  std::string_view word;  // the address without its talker; of a proprietary sentence the whole address
   SentenceType type;
   std::string_view name;
   void (*read)(FieldReader& fields, Sentence& sentence);

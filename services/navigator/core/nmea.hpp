@@ -43,10 +43,10 @@ struct FixValues {
   std::optional<GeodeticPlace> position;
   double msl_height_m = kNan;
   double geoid_separation_m = kNan;
-  double direct_ellipsoid_height_m = kNan;  // of receivers that say it so
+  double direct_ellipsoid_height_m = kNan;  // of receivers that state the ellipsoid height itself
   double speed_mps = kNan;
   double course_rad = kNan;
-  double velocity_sd_mps = kNan;  // per axis, only where the receiver says it
+  double velocity_sd_mps = kNan;  // per axis, only where the receiver states it
 
   /// Above the WGS84 ellipsoid, said so or as height above the geoid with its separation; NaN when neither is said.
   double EllipsoidHeightM() const { return std::isnan(direct_ellipsoid_height_m) ? msl_height_m + geoid_separation_m : direct_ellipsoid_height_m; }
@@ -93,7 +93,7 @@ enum class SentenceType {
   // Messages of an autopilot (mavlink_messages.hpp).
   kMavAttitude,
   kMavPosition,
-  kMavGps,  // its receiver's fix: quality and accuracies without a place
+  kMavGps,  // fix of the autopilot's receiver: quality and accuracies without a place
 };
 inline constexpr std::size_t kNumSentenceTypes = static_cast<std::size_t>(SentenceType::kMavGps) + 1;
 
@@ -107,7 +107,7 @@ struct Sentence : FixValues, AttitudeValues {
   double declination_rad = kNan;                         // positive east
   double turn_rate_radps = kNan;                         // positive when the bow turns to starboard
   std::optional<StrapdownSample> imu;
-  std::optional<std::uint32_t> time_boot_ms;  // of an autopilot: since it was switched on
+  std::optional<std::uint32_t> time_boot_ms;  // of an autopilot: time since it was switched on
 };
 
 struct ParseResult {
@@ -115,7 +115,7 @@ struct ParseResult {
   Sentence sentence = {};  // only when there is no fault
 };
 
-/// Of any talker, numbers too; of proprietary sentences PASHR, PSAT,HPR, PTNTHTM, VNINS, VNYMR and VNIMU.
+/// Parses sentences of any talker, also of numbers; of proprietary sentences PASHR, PSAT,HPR, PTNTHTM, VNINS, VNYMR and VNIMU.
 ///
 /// @param line               from $ or ! to the checksum
 /// @param requires_checksum  false: a line without * is accepted too, one with a wrong checksum never

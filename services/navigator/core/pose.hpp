@@ -34,7 +34,7 @@ struct Pose {
   double latitude_deg = kNan;             // of the reference point
   double longitude_deg = kNan;
   double ellipsoid_height_m = kNan;
-  Eigen::Vector3d p_map_m = Eigen::Vector3d::Constant(kNan);  // while the height is not known, at that of the datum
+  Eigen::Vector3d p_map_m = Eigen::Vector3d::Constant(kNan);  // while the height is not known, at the height of the datum
   Eigen::Vector3d velocity_map_mps = Eigen::Vector3d::Constant(kNan);
   double heading_rad = kNan;  // as roll and pitch against north and up where the boat is
   double pitch_rad = 0.0;

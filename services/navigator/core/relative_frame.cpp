@@ -20,8 +20,8 @@ constexpr std::chrono::seconds kHeadingMemory{3};
 // A boat that coasts may turn by more, but a greater deviation would take what stands at 50 m for anything within several metres.
 constexpr double kMostHeadingSdRad = DegToRad(3.0);
 
-// A heading that comes back is off by what the frame has turned meanwhile. What stands must not turn with it at once: the frame turns back to north
-// within a minute.
+// A heading that comes back differs from the frame's by how far the frame has turned meanwhile. Standing things must not turn at once: the frame
+// turns back to north within a minute.
 constexpr double kTurnBackTimeS = 30.0;
 
 double Seconds(std::chrono::microseconds duration) { return static_cast<double>(duration.count()) * 1e-6; }
@@ -34,7 +34,7 @@ Eigen::Matrix2d RotationFrameVessel(double heading_rad) {
   return rotation;
 }
 
-// What differs in each frame, of other runs of the process too.
+// A number that differs in each frame, also in frames of other runs of the process.
 double NumberOf(Utime begin) {
   const auto since_1970 = std::chrono::duration_cast<std::chrono::milliseconds>(begin.time_since_epoch()).count();
   return static_cast<double>(std::max<std::int64_t>(1, since_1970));  // readers refuse less
@@ -122,7 +122,7 @@ void RelativeFrame::Add(const OdometryMotion& motion) {
   if (begin.time > nodes_.back().time) nodes_.push_back(begin);
   const double for_s = Seconds(motion.end - motion.begin);
   nodes_.push_back(Moved(begin, motion.end, motion.displacement_m, motion.turn_rad, motion.covariance));
-  // Along the heading at the end of the motion; the mean direction is that of its middle.
+  // Rates are along the heading at the end of the motion; the mean direction of the way is the heading in the middle of the motion.
   const auto [sin, cos] = SinCosOf(0.5 * motion.turn_rad);
   const auto& way_m = motion.displacement_m;
   rates_ = Eigen::Vector3d(cos * way_m.x() - sin * way_m.y(), sin * way_m.x() + cos * way_m.y(), motion.turn_rad) / for_s;
@@ -189,7 +189,7 @@ Pose RelativeFrame::Shown(const Pose& earth, double tilt_sd_rad) {
     if (!MayBegin(earth.time)) return earth;
     Activate(earth);
   } else if (heading_source_ == HeadingSource::kNone && earth.status == PoseStatus::kNoPosition && !IsByLidar(earth.time)) {
-    // The frame turned with the boat. One that has north stands.
+    // The frame turned with the boat: it begins anew. A frame that has north stands.
     Activate(earth);
   }
   FollowHeading(earth);

@@ -13,13 +13,14 @@
 
 namespace lookout::navigator {
 
-/// Poses in it depend on what was added and on the poses on the earth that were shown to it, in their order.
+/// Poses in this frame depend on the motions added and on the poses on the earth passed to At, in their order.
 class RelativeFrame {
  public:
-  /// It begins so long after the start where nothing told of a place: motions alone, or else.
+  /// The frame begins this long after the start where nothing told of a place: kBeginsSilent with motions alone, else kWaits.
   static constexpr std::chrono::milliseconds kBeginsSilent{500};
   static constexpr std::chrono::seconds kWaits{3};
-  /// And so long after the last pose on the earth, by when tracks have ended; sooner where the earth had not been known for so long.
+  /// The frame begins this long after the last pose on the earth, by when tracks have ended; sooner (after kWaits at least) where the earth was known
+  /// for a shorter time.
   static constexpr std::chrono::seconds kBeginsAfterEarth{30};
   /// Without a known motion the boat goes on as it went for so long; then its own motion is not known.
   static constexpr std::chrono::milliseconds kFresh{350};
@@ -36,11 +37,11 @@ class RelativeFrame {
   /// Whether motions would be used at this time.
   bool Wants(Utime time) const;
 
-  /// @param earth  the pose by all other inputs; of one that places nothing its roll, pitch, heave and heading are used
-  /// @param tilt_sd_rad  of roll and pitch that are not measured
-  /// @return the same where it is placed; else the pose in this frame. Its variance of heading is that of the turn in the last
-  ///         3 s, that of the heading where one is measured. Where the own motion is not known the pose stays, and velocity and its covariance are
-  ///         NaN
+  /// @param earth  the pose by all other inputs; where it has no place its roll, pitch, heave and heading are used
+  /// @param tilt_sd_rad  deviation of roll and pitch where they are not measured
+  /// @return `earth` where it is placed; else the pose in this frame. Its variance of heading is the variance of the turn in the last 3 s, the
+  ///         variance of the heading where a heading is measured. Where the own motion is not known the pose stays, and velocity and its covariance
+  ///         are NaN
   Pose At(const Pose& earth, double tilt_sd_rad);
 
   std::int64_t num_frames() const { return num_frames_; }

@@ -1,4 +1,4 @@
-// Sentences whose time is that of a zone, beside others of their input that tell UTC.
+// Finds sentences that tell local time, beside sentences of the same input that tell UTC.
 #pragma once
 
 #include <chrono>

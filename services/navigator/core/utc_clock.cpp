@@ -16,7 +16,7 @@ using std::chrono::microseconds;
 constexpr std::chrono::seconds kSilence(5);
 // A second less the interval of a receiver, of 2 Hz and more.
 constexpr std::chrono::milliseconds kMinLeapBack(400);
-// Of 1 Hz it says the same instant twice, so much apart; sentences of one instant come within half a second at 4800 baud.
+// A receiver of 1 Hz says the same instant twice, at least this far apart; sentences of one instant come within half a second at 4800 baud.
 constexpr std::chrono::milliseconds kMinLeapRepeat(700);
 
 }  // namespace

@@ -12,19 +12,20 @@ namespace lookout::navigator {
 
 /// The state that UtcClock keeps of one source.
 struct SourceClock {
-  std::optional<Utime> last_utc;   // of its measurements
-  Utime last_time{};               // of the same, on the time scale of POSE
-  std::optional<Utime> dated_utc;  // of its last sentence, with or without a measurement, and when that came: gives the day to those without a date
+  std::optional<Utime> last_utc;   // of the source's last measurement
+  Utime last_time{};               // of the last measurement, on the time scale of POSE
+  std::optional<Utime> dated_utc;  // of the source's last sentence, with or without a measurement, and (dated_arrival) when it came: gives the day to
+                                   // sentences without a date
   Utime dated_arrival{};
-  bool has_date = false;               // one of them held a date; till then the day is a guess by the computer's clock
-  bool has_measured = false;           // the last one came of a measurement; till then the time is that of the receiver's own clock
-  std::optional<Utime> last_backward;  // refused because its time ran back
+  bool has_date = false;               // a sentence held a date; until then the day is guessed by the computer's clock
+  bool has_measured = false;           // the last sentence told a measurement; else its time is the receiver's own clock
+  std::optional<Utime> last_backward;  // last UTC that was refused because it ran back
   int num_backward = 0;
-  int num_leaps = 0;  // leap seconds that it went through, and the midnight of the last
+  int num_leaps = 0;  // leap seconds that the source went through, and (last_leap) the midnight of the last
   std::optional<std::chrono::sys_days> last_leap;
-  Utime last_arrival{};     // of its last new instant
-  bool is_forward = false;  // that instant was after the one before it: not so of the later of two receivers on one line
-  ClockFit fit;             // of arrival less UTC (leap seconds counted on), less its delay where that is known
+  Utime last_arrival{};     // arrival of the source's last new instant
+  bool is_forward = false;  // that instant was after the one before; false for the later of two receivers on one line
+  ClockFit fit;             // of arrival less UTC (leap seconds counted on), less the source's delay where known
 
   bool KnowsOffset() const { return !fit.is_empty() && fit.is_settled(); }
 };
@@ -48,8 +49,8 @@ class UtcClock {
 
   explicit UtcClock(std::chrono::microseconds max_latency) : max_latency_(max_latency) {}
 
-  /// @param latency      of the source; nullopt = not known
-  /// @param is_measured  false: of a receiver without a fix, whose clock may begin anywhere. It does not correct the computer's
+  /// @param latency      delay of the source; nullopt = not known
+  /// @param is_measured  false: from a receiver without a fix, whose clock may begin anywhere and so does not correct the computer's
   /// @return nullopt when the source's time runs backwards
   std::optional<MeasurementTime> OfSentence(SourceClock& source, Utime arrival, std::chrono::microseconds time_of_day,
                                             std::optional<std::chrono::sys_days> date, std::optional<std::chrono::microseconds> latency,
@@ -60,7 +61,7 @@ class UtcClock {
 
   /// A burst of sentences of one epoch is shorter than this at 9600 baud with three of them; epochs are 50 ms apart or more.
   static constexpr std::chrono::milliseconds kBurst{50};
-  /// Sentences of one source differ by less. A sentence that is late by more waited somewhere.
+  /// The lateness of sentences of one source differs by less than this. A sentence that is late by more waited somewhere.
   static constexpr std::chrono::milliseconds kMinLateness{300};
 
   /// Lateness of a sentence without a time. Where one of the same source with a time came with it, kBurst before at most, and was late by
@@ -88,7 +89,7 @@ class UtcClock {
   std::chrono::microseconds max_latency_;
   std::chrono::microseconds off_{0};  // computer's clock less UTC, leap seconds counted on
   bool is_off_ = false;
-  int num_leaps_ = 0;  // of the source that was compared last: so many seconds is the computer's clock ahead, as it did not get them
+  int num_leaps_ = 0;  // of the source that was compared last: the computer's clock, which did not get them, is this many seconds ahead
   ClockFit off_fit_;   // while is_off_
   ClockFit fine_fit_;  // while not, of sources whose delay is known
   // The last source that says that the clock is right, or off by off_, and when.

@@ -34,7 +34,7 @@ TextLogPlayer::TextLogPlayer(const std::vector<Log>& logs, double speed) : speed
   if (next_) start_ = time_ = readings_[*next_].line->time;
 }
 
-// The earliest; of equal ones that of the first log.
+// Finds the earliest line; at equal times the line of the first log.
 void TextLogPlayer::FindNext() {
   next_.reset();
   for (std::size_t i = 0; i < readings_.size(); ++i) {

@@ -21,7 +21,7 @@ class TextLogPlayer {
  public:
   /// A longer silence in the log, and a time that runs back, are not waited for.
   static constexpr std::chrono::seconds kMaxPause{60};
-  /// Of the log, that one call of Play reads at most: POSE of more than that at once would not pass the bus.
+  /// Stretch of the log that one call of Play reads at most: POSE of a longer stretch at once would not pass the bus.
   static constexpr std::chrono::seconds kMaxRound{1};
 
   struct Log {
@@ -31,7 +31,7 @@ class TextLogPlayer {
   };
 
   struct Taker {
-    std::function<void(Utime log_time)> advance_to;  // before each line, and where the lines are not closer, between them
+    std::function<void(Utime log_time)> advance_to;  // called before each line, and in between while the next line is not due
     std::function<void(Utime log_time, Bytes line, const std::string& name)> take_line;
   };
 
@@ -44,7 +44,7 @@ class TextLogPlayer {
 
   bool is_finished() const { return !next_; }
 
-  /// Of the first line of all, and of the line played last: UTC as the logs say.
+  /// Times of the first line of all logs, and of the line played last: UTC as the logs say.
   Utime start() const { return start_; }
   Utime time() const { return time_; }
 

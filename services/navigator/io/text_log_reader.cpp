@@ -39,7 +39,7 @@ bool IsText(char letter) { return IsLineEnd(letter) || letter == '\t' || (letter
 // From one time of day to the next a day has gone by.
 bool IsOverMidnight(microseconds from, microseconds to) { return from - to > kDay / 2; }
 
-// The log was written all the while. Of several talkers on one line a time may come a little late.
+// The log was written all the while. With several talkers on one line a time may come a little late.
 bool GoesOn(microseconds from, microseconds to) {
   const auto step = to - from + (IsOverMidnight(from, to) ? kDay : microseconds(0));
   return step >= -TextLogReader::kMaxLate && step <= TextLogReader::kMostPause;
@@ -59,7 +59,7 @@ bool IsTextLog(const std::filesystem::path& file) {
     if (!start.empty() || letter != 0) start += letter;
   }
   if (std::ranges::any_of(kOtherMagics, [&start](std::string_view magic) { return start.starts_with(magic); })) return false;
-  // Of ten bytes: less than this is another kind of file, in which a $ may stand anywhere.
+  // Text characters among ten bytes: a file with fewer is of another kind, in which a $ may stand anywhere.
   constexpr std::ptrdiff_t kMinTextOfTen = 9;
   const bool is_text = 10 * std::ranges::count_if(start, IsText) >= kMinTextOfTen * static_cast<std::ptrdiff_t>(start.size());
   const auto lines = SplitDatagram({reinterpret_cast<const std::uint8_t*>(start.data()), start.size()});
@@ -93,7 +93,7 @@ void TextLogReader::FindColumns() {
   in_.Seek(0);
 }
 
-// The first date may be wrong: of the first ones the one that most others agree with. And the first time may be that of a zone.
+// The first date may be wrong: among the first dates the one counts with which most others agree. And the first time may be local time.
 std::optional<Utime> TextLogReader::FindFirstTime(std::optional<sys_days> day) {
   struct Vote {
     sys_days day;  // of the first time
@@ -127,7 +127,7 @@ std::optional<Utime> TextLogReader::FindFirstTime(std::optional<sys_days> day) {
   }
   has_date_ = !votes.empty();
   if (has_date_) {
-    day_ = std::ranges::max_element(votes, {}, &Vote::count)->day;  // the first of equal ones
+    day_ = std::ranges::max_element(votes, {}, &Vote::count)->day;  // the first among dates with equal votes
   } else if (day) {
     day_ = *day;
   }
@@ -160,7 +160,7 @@ bool TextLogReader::IsPause() {
   return !goes_on;
 }
 
-// Of a date in line_, which is after day_.
+// Whether the step from day_ to a later date in line_ is right.
 bool TextLogReader::IsStepRight(sys_days date, microseconds of_day) {
   if (IsRollover(date - day_)) return true;
   int num_dates = 1;
@@ -234,7 +234,7 @@ bool TextLogReader::ReadRow() {
     if (line_.front() == '#') continue;
     row_ = ReadCsvRow(line_, *columns_);
     if (row_.time || row_.is_sentence) return true;
-    // Of recordings that were put one behind the other.
+    // A head in the middle comes from recordings that were put one behind the other.
     if (const auto columns = FindCsvColumns(line_)) columns_ = columns;
   }
   return false;

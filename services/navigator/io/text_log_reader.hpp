@@ -27,11 +27,12 @@ bool IsTextLog(const std::filesystem::path& file);
 
 class TextLogReader {
  public:
-  /// A sentence that is older than the one before it by no more than this came late, as several talkers on one line have it: it takes the time of the
-  /// one before. A sentence that runs back further begins anew.
+  /// A sentence that is older than the one before it by no more than this came late, as happens with several talkers on one line: it takes the time
+  /// of the sentence before. A sentence that runs back further begins anew.
   static constexpr std::chrono::seconds kMaxLate{10};
 
-  /// A date that is a step from those before it counts where the dates behind it agree: of so many at least half. The one that is wrong is left out.
+  /// A date that is a step from the dates before counts where at least half of the kDatesCompared dates from it on agree with it. A wrong date is
+  /// left out.
   static constexpr int kDatesCompared = 16;
   /// So many local times in a row, and nothing that says more of time: then they count.
   static constexpr int kMostLocal = 100;
@@ -48,26 +49,26 @@ class TextLogReader {
   static bool IsCsvRecording(const std::filesystem::path& file);
 
   struct Line {
-    Utime time;   // UTC of the sentence, or of its row; where it says none, of the one before it; of the first ones, the first that is said
-    Bytes bytes;  // without its end, of a row the message; until the next call
+    Utime time;   // UTC of the sentence, or of its row; without one, UTC of the line before; before any UTC, the first that follows
+    Bytes bytes;  // the line without its end, or the message of a row; valid until the next call
   };
 
   /// @return the next line that is not empty, whatever it holds; nullopt at the end. CR, LF or both end a line, and a checksum with another sentence
-  ///         behind it; of one that is longer than kMaxLineBytes only the last part is returned. Of a CSV recording: the next row with a sentence.
+  ///         behind it; of a line that is longer than kMaxLineBytes only the last part is returned. In a CSV recording: the next row with a sentence.
   std::optional<Line> Next();
   static constexpr std::size_t kMaxLineBytes = 4096;
 
   /// The file is a CSV recording whose rows tell the time.
   bool is_csv() const { return columns_.has_value(); }
 
-  /// Rows of a CSV recording that were left out: NMEA 2000, Signal K; and rows without a time, which have that of the row before.
+  /// Rows of a CSV recording that were left out: NMEA 2000, Signal K; and rows without a time, which get the time of the row before.
   std::int64_t num_other_rows() const { return num_other_rows_; }
   std::int64_t num_rows_without_time() const { return num_rows_without_time_; }
 
   /// Why reading ended before the end of the file (what gzip packed is cut short); empty: it did not.
   const std::string& fault() const { return in_.fault(); }
 
-  /// False: no sentence of the file holds a date; the times are those of the given day, or of 1970-01-01.
+  /// False: no sentence of the file holds a date; times are on the given day, or on 1970-01-01.
   bool has_date() const { return has_date_; }
 
   /// Bytes read so far.
@@ -98,7 +99,7 @@ class TextLogReader {
   bool has_date_ = false;
   TimeZoneCheck time_zone_;
   int num_local_ = 0;                                // in a row
-  bool has_other_zone_ = false;                      // some of its sentences tell local time
+  bool has_other_zone_ = false;                      // some sentences of the file tell local time
   std::chrono::microseconds said_of_day_{0};         // the last that was no local time
   std::chrono::sys_days day_{};                      // of the last time
   std::optional<std::chrono::microseconds> of_day_;  // the last time of day

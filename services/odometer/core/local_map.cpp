@@ -23,7 +23,7 @@ std::size_t SlotOf(std::uint64_t key, std::size_t num_slots) {
   return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> 32U) & (num_slots - 1);
 }
 
-// What grows and waves in the wind says a little.
+// Weight of rough surfaces, such as plants that wave in the wind: they tell little about the motion.
 constexpr double kRoughWeight = 0.05;
 // Surfaces that look alike: within 45 deg.
 constexpr float kLeastCosine = 0.7F;

@@ -31,7 +31,7 @@ Eigen::Vector3d MotionUncertainty::Correct(const Eigen::Vector3d& correction, co
   // The share of the error of the prediction that is left, by the weights of the fit.
   const Eigen::Matrix3d left = expected_place_.ldlt().solve(place_covariance).transpose();
   const Eigen::Matrix3d corrected = place_covariance + left * (predicted - expected_place_) * left.transpose();
-  // The measurement corrects all other errors by their correlation with that of the place.
+  // The measurement corrects all other errors by their correlation with the error of the place.
   const Eigen::Matrix<double, 12, 3> gain = predicted.ldlt().solve(covariance_.middleRows<3>(kPlace)).transpose();
   const Eigen::Matrix<double, 12, 3> with_acceleration =
       covariance_.middleCols<3>(kAcceleration) - gain * (Eigen::Matrix3d::Identity() - left) * covariance_.block<3, 3>(kPlace, kAcceleration);

@@ -8,15 +8,15 @@ namespace lookout::odometer {
 /// Places: east-like, north-like (m), bearing (rad, counter-clockwise), along the axes of the map. Rates and accelerations: forward, port (m/s,
 /// m/s2), turn (rad/s, rad/s2, counter-clockwise), along the axes of the vessel.
 ///
-/// A boat that brakes does so for seconds. The acceleration is therefore one unknown constant, not new noise with each scan: the deviation of a speed
+/// A boat brakes for seconds. The acceleration is therefore one unknown constant, not new noise with each scan: the deviation of a speed
 /// that no scan measures grows linearly with time. The acceleration is not estimated; its correlation with the other errors is followed (a
 /// Schmidt-Kalman or "consider" filter; Jazwinski, Stochastic Processes and Filtering Theory, 1970, section 8.4).
 ///
 /// The fit weighs its prediction as if the acceleration were new with each scan (`expected_place`): a weaker prediction lets through more noise of
-/// single scans. The covariance is that of this fit for a boat whose acceleration lasts.
+/// single scans. The covariance states the errors of this fit for a boat whose acceleration lasts.
 class MotionUncertainty {
  public:
-  /// @param acceleration_sd  forward and port, m/s2; of the turn, rad/s2
+  /// @param acceleration_sd  of forward and port, m/s2; of the turn, rad/s2
   explicit MotionUncertainty(const Eigen::Vector3d& acceleration_sd) : acceleration_variance_(acceleration_sd.cwiseAbs2()) {}
 
   /// The place has no error.
@@ -36,7 +36,7 @@ class MotionUncertainty {
   /// @return the correction of the place at the begin of the motion
   Eigen::Vector3d Correct(const Eigen::Vector3d& correction, const Eigen::Matrix3d& place_covariance);
 
-  /// Measures later places from this one: it has no error from here on.
+  /// Measures later places from the present place, which has no error from here on.
   void BeginAtPlace();
 
   /// Bounds the deviations of the rates, in every direction: a boat goes only so fast.

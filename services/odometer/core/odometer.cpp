@@ -14,7 +14,7 @@ namespace lookout::odometer {
 
 namespace {
 
-// Points for the map, and those of them that are registered.
+// Sides of the cubes of which one return each enters the map (kMapSampleM), and of which one of these each is registered (kSampleM).
 constexpr double kMapSampleM = 0.5;
 constexpr double kSampleM = 1.0;
 constexpr std::size_t kMaxSample = 600;
@@ -24,7 +24,7 @@ constexpr std::int64_t kForgetEvery = 20;
 // Before anything is known: any speed of a boat in a harbour.
 constexpr double kUnknownSpeedSdMps = 5.0;
 constexpr double kUnknownTurnSdRadps = 0.5;
-// Attitude and height against calm water: those of a small boat in waves.
+// Deviations of attitude and height against calm water: a small boat in waves.
 constexpr double kTiltSdRad = 0.06;
 constexpr double kHeaveSdM = 0.3;
 constexpr double kTiltSmoothing = 0.5;
@@ -40,11 +40,11 @@ constexpr int kMaxUnknown = 5;
 constexpr int kLeastMatched = 60;
 constexpr double kLeastShareOfNear = 0.5;
 constexpr double kLeastShareOfAll = 0.15;
-// What stands is more than one ship, of which the largest on canals and rivers is 110 m long (CEMT class Va): returns in so many squares, or in so
-// many things apart from each other.
+// Matched returns must show more than one ship, of which the largest on canals and rivers is 110 m long (CEMT class Va): they lie in at least this
+// many squares, or in at least this many things apart from each other.
 constexpr std::size_t kLeastSquares = 22;
 constexpr std::size_t kLeastThings = 5;
-// Or it is all around the boat, as in a lock: returns in so many of 12 sectors. A boat alongside takes 6 at most.
+// Or the returns are all around the boat, as in a lock: in at least this many of 12 sectors. A boat alongside takes 6 at most.
 constexpr int kNumSectors = 12;
 constexpr int kLeastSectors = 8;
 // The rates are known where their deviations are below.
@@ -58,7 +58,7 @@ Eigen::Isometry3d Planar(const Eigen::Vector2d& p_m, double turn_rad) {
   return T;
 }
 
-// Of the bow against the map's x axis, counter-clockwise.
+// Bearing of the bow against the map's x axis, counter-clockwise.
 double BearingOf(const Eigen::Isometry3d& T_map_vessel) { return Atan2(T_map_vessel.linear()(1, 0), T_map_vessel.linear()(0, 0)); }
 
 constexpr std::array<int, 3> kPlanar{0, 1, 5};  // of Vector6: east, north, rotation about up
@@ -195,14 +195,14 @@ Odometer::Prediction Odometer::Predict(double since_s) {
   const Eigen::Matrix3d R_middle = RotationAboutZ(BearingOf(T_map_vessel_) + 0.5 * turn_rad);
   const double bearing_rad = BearingOf(T_map_vessel_) + turn_rad;
   const Eigen::Vector2d p_m = T_map_vessel_.translation().head<2>() + R_middle.topLeftCorner<2, 2>() * rates_.head<2>() * since_s;
-  // The search begins with the attitude and the height of before; what is expected of both is calm water.
+  // The search begins with the last attitude and height; the expected attitude and height are those on calm water.
   expected.T_map_begin = T_map_vessel_;
   const Eigen::Vector3d tilt_rad(tilt_rates_radps_.x() * since_s, tilt_rates_radps_.y() * since_s, 0.0);
   expected.T_map_begin.linear() = RotationAboutZ(turn_rad) * T_map_vessel_.linear() * RotationBy(tilt_rad);
   expected.T_map_begin.translation().head<2>() = p_m;
   expected.T_map_vessel = Planar(p_m, bearing_rad);
   uncertainty_.Predict(since_s, R_middle);
-  // The returns are half a scan old on average, so an error of the rates displaces the fit by half of what it makes in a scan.
+  // The returns are half a scan old on average, so an error of the rates displaces the fit by half of the displacement in a scan.
   if (!predicted.are_rates_known) predicted.distortion = 0.25 * since_s * since_s * R_middle * uncertainty_.rates() * R_middle.transpose();
   const Eigen::Matrix3d& planar = uncertainty_.expected_place();
   const Eigen::Matrix3d information = planar.ldlt().solve(Eigen::Matrix3d::Identity());
@@ -232,7 +232,7 @@ Reason Odometer::Judge(const std::vector<MapPoint>& points, const Fit& fit) cons
   return Reason::kNone;
 }
 
-// What lies near something known and does not fit it moves, and stays out of the map.
+// A point that lies near known points and does not fit them belongs to a moving thing, and stays out of the map.
 void Odometer::AddToMap(const std::vector<MapPoint>& points, const std::vector<std::size_t>& sample, const Fit* fit) {
   std::vector<bool> moves(points.size(), false);
   for (std::size_t i = 0; fit != nullptr && i < sample.size(); ++i) moves[sample[i]] = fit->is_near[i] && !fit->is_matched[i];

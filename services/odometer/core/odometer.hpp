@@ -1,5 +1,4 @@
-// Own motion from scan to scan. The method: points of what stands, straightened by the last motion, are registered with a map of what was seen
-// before.
+// Own motion from scan to scan. The method: points of standing things, straightened by the last motion, are registered with a map of earlier points.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,16 +20,16 @@ enum class Reason { kNone = 0, kFirstScan = 1, kGap = 2, kFewReturns = 3, kOneTh
 
 struct OdometerParams {
   StandingParams standing;
-  // Of an acceleration that lasts.
+  // Deviations of an acceleration that lasts.
   double acceleration_sd_mps2 = 1.0;
   double turn_acceleration_sd_radps2 = 0.3;
 };
 
-/// Motion from the end of the scan before to the end of this one.
+/// Motion from the end of the scan before to the end of this scan.
 struct Motion {
   Utime begin;
   Utime end;
-  Reason reason = Reason::kNone;                             // why it is unknown; kNone: it is known
+  Reason reason = Reason::kNone;                             // why the motion is unknown; kNone: it is known
   Eigen::Vector2d displacement_m = Eigen::Vector2d::Zero();  // of the reference point, forward and port at `begin`, levelled
   double turn_rad = 0.0;                                     // of the bow, clockwise
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();      // of forward, port, turn
@@ -43,7 +42,7 @@ struct Motion {
 
 class Odometer {
  public:
-  /// Motion over a longer time than this is not looked at: scans are missing.
+  /// Over a longer time than this no motion is measured: scans are missing.
   static constexpr double kMaxGapS = 0.5;
 
   explicit Odometer(const OdometerParams& params)
@@ -61,7 +60,7 @@ class Odometer {
   std::vector<MapPoint> Straightened(const std::vector<TimedPoint>& points) const;
   struct Prediction {
     Expected expected;
-    bool are_rates_known = false;                          // those by which the scan is straightened
+    bool are_rates_known = false;                          // the rates by which the scan is straightened are known
     Eigen::Matrix3d distortion = Eigen::Matrix3d::Zero();  // covariance of the place by a distorted scan, map axes
   };
   Prediction Predict(double since_s);

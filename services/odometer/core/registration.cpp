@@ -95,7 +95,7 @@ Normal Sum(const std::vector<MapPoint>& points, const Eigen::Isometry3d& T_map_v
 Matrix6 CovarianceOfThings(const std::vector<MapPoint>& points, const std::vector<Vector6>& pulls, const Matrix6& curvature, const Fit& fit) {
   // Where the returns differ by as much as the scale, the pulls hardly change with the place; what is left of that is uncertain, too.
   constexpr double kLeastCurvature = 0.2;
-  Matrix6 nothing_known = 1e6 * Matrix6::Identity();  // the place is then known as well as it was predicted
+  Matrix6 nothing_known = 1e6 * Matrix6::Identity();  // no information from returns: the place is then known as well as predicted
   CubeIndex index;
   std::vector<Vector6> of_squares;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -21,29 +21,29 @@ Eigen::Vector3d RotationVector(const Eigen::Matrix3d& R);
 /// Side of a square of the water: what lies in one counts as one thing.
 inline constexpr double kSquareM = 5.0;
 
-/// What is known before the returns are looked at.
+/// The expected place, before the returns are used.
 struct Expected {
   Eigen::Isometry3d T_map_vessel = Eigen::Isometry3d::Identity();
   /// Where the search begins.
   Eigen::Isometry3d T_map_begin = Eigen::Isometry3d::Identity();
   /// Inverse of the covariance of place and rotation; 0 = nothing is known of a direction.
   Matrix6 information = Matrix6::Zero();
-  double search_m = 0.5;  // a return may lie so far from where it was seen before
+  double search_m = 0.5;  // greatest distance of a return from the map point to which it belongs
 };
 
 struct Fit {
   Eigen::Isometry3d T_map_vessel = Eigen::Isometry3d::Identity();
-  Matrix6 information = Matrix6::Zero();       // with what was known before
+  Matrix6 information = Matrix6::Zero();       // includes the expected place's
   Matrix6 information_seen = Matrix6::Zero();  // of the returns alone
   // The part of `information` that is expected of the noise of normals: along surfaces, where they tell nothing.
   Matrix6 information_spurious = Matrix6::Zero();
   // Covariance of the fit by the scatter of the things: see Register.
   Matrix6 covariance_of_things = Matrix6::Zero();
-  std::vector<bool> is_near;     // [returns] something was seen before near it
-  std::vector<bool> is_matched;  // [returns] it lies on what was seen before
+  std::vector<bool> is_near;     // [returns] a map point lies near the return
+  std::vector<bool> is_matched;  // [returns] the return fits a map point
   int num_near = 0;
   int num_matched = 0;
-  double residual_m = 0.0;  // root mean square of those that are matched
+  double residual_m = 0.0;  // root mean square over matched returns
 };
 
 /// Gauss-Newton with the nearest point of the map to each return, its differences weighted by the shape there and by Geman-McClure's function: what

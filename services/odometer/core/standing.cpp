@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 // Neighbours on one surface differ by less: 0.15 m, and 2 % of the range, which is a wall seen at 10 deg by columns 0.2 deg apart.
 constexpr double kSurfaceStepM = 0.15;
 constexpr double kSurfaceStepPerRange = 0.02;
-// Of rings, 2 deg apart: a bank that rises by one in three.
+// Greatest step of the range from ring to ring, 2 deg apart, as a share of the range: a bank that rises by one in three.
 constexpr double kBankStepPerRange = 0.12;
 // Columns on either side by which the surface is told, and how uneven it may be: noise of the range, and bent hulls.
 constexpr int kReach = 3;
@@ -135,9 +135,9 @@ class RangeImage {
   std::vector<int> reach_down_;
 };
 
-// Centre of something narrow with free sight on both sides: the same place from wherever it is seen. Its returns lie on the side that faces the
-// lidar; of a round post these are on average pi/4 of the radius before the axis. The centre lies behind them along the sight, not level: which way
-// is up is not known here.
+// Centre of something narrow with free sight on both sides: the centre is the same from wherever the post is seen. Its returns lie on the side that
+// faces the lidar; of a round post these are on average pi/4 of the radius before the axis. The centre lies behind them along the sight, not level:
+// which way is up is not known here.
 std::optional<Vector3d> RangeImage::CentreOfPost(int column, int ring, double range_m) const {
   const double step_m = kSurfaceStepM + kSurfaceStepPerRange * range_m;
   const double column_m = std::max(1e-3, range_m * column_rad_);

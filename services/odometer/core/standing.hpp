@@ -1,4 +1,4 @@
-// Returns of what may stand: neither the own boat, nor water, nor drops.
+// Returns of things that may stand: neither the own boat, nor water, nor drops.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -41,18 +41,18 @@ struct StandingParams {
 
 /// How the surroundings of a return look in its scan.
 enum class Shape {
-  kSurface,  // even: it tells the distance across it
-  kPost,     // narrower than 0.6 m, with free sight beside it: it tells both directions on the water
+  kSurface,  // even: tells the distance across the surface
+  kPost,     // narrower than 0.6 m, with free sight on both sides: tells both directions on the water
   kRough     // foliage and the like
 };
 
-/// A return in the vessel frame at the time of its shot; of a post: its centre.
+/// A return in the vessel frame at the time of its shot; for a post, the centre of the post.
 struct TimedPoint {
   Eigen::Vector3d p_vessel_m;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // vessel frame; of a surface: across it, of either sign
   Shape shape = Shape::kRough;
-  double normal_sd_rad = 0.0;  // of a surface: of the normal about the vertical, by the noise of ranges
-  double before_end_s = 0.0;   // its shot is so long before the last shot of the scan
+  double normal_sd_rad = 0.0;  // of a surface: deviation of the normal about the vertical, by the noise of ranges
+  double before_end_s = 0.0;   // time from its shot to the last shot of the scan
 };
 
 /// One return of each cube of `sample_m`, the first by column, then ring. A return counts where a neighbouring shot met the same surface: drops stand

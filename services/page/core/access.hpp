@@ -26,7 +26,7 @@ bool IsOwnOrigin(std::string_view origin, const OwnHosts& own);
 /// Its time does not tell how much of the token was right.
 bool HasToken(std::string_view authorization, std::string_view token);
 
-/// Of each answer.
+/// Headers that each answer carries.
 /// @param host  the header `Host`, a host of ours: the page's WebSocket may be opened to it
 std::vector<std::pair<std::string_view, std::string>> SecurityHeaders(std::string_view host);
 

@@ -21,7 +21,7 @@ std::string With(std::string object, std::string_view name, std::string_view val
   return object.append(",\"").append(name).append("\":").append(value).append("}");
 }
 
-// Of the boat's processes as HEALTH has them; that of a second lidar is a process of its own.
+// Names of the boat's processes as in HEALTH; a second lidar has a process of its own.
 const std::vector<std::string_view>& ProcessNames() {
   static const std::vector<std::string_view> names = [] {
     std::vector<std::string_view> all{"lidar_2"};

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kMaxLimitM = 10'000.0;  // the tracker has bounds of its own
+constexpr double kMaxLimitM = 10'000.0;  // coarse bound: the tracker checks with bounds of its own
 constexpr std::int64_t kMaxScansOn = 1'000'000;
 static_assert(bus::kChannels.size() <= kMaxChannels);
 

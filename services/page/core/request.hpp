@@ -20,13 +20,13 @@ struct Watch {
 struct Got {
   std::uint64_t num_frames = 0;
 };
-/// One of the two times is set.
+/// Either `time` or `scan_time` is set.
 struct At {
   std::uint32_t id = 0;
   int source = 0;
   std::optional<Utime> time;       // of the log
   std::optional<Utime> scan_time;  // of measurement
-  int num_scans_on = 0;            // of a step: so many scans further
+  int num_scans_on = 0;            // a step by this many scans from there
   std::vector<ChannelIndex> channels;
 };
 struct Range {
@@ -52,12 +52,12 @@ inline constexpr int kMaxBuckets = 4000;
 inline constexpr int kMaxSources = 4;
 inline constexpr std::size_t kMaxChannels = 64;
 
-/// Names of the channels that a page may show, in the order of their indices: those of the channel table.
+/// Names of the channels that a page may show, in the order of the channel table, whose indices count.
 const std::vector<std::string_view>& ChannelNames();
 
 /// The fault of a text that is no request.
 struct RequestFault {
-  std::uint32_t id = 0;  // 0: it had none
+  std::uint32_t id = 0;  // 0: the text had none
   std::string reason;
 };
 
@@ -67,7 +67,7 @@ std::optional<Request> ParseRequest(std::string_view text, RequestFault& fault);
 
 /// An acknowledgement that a browser with a valid token has sent.
 struct Acknowledgement {
-  std::int64_t alert_id = 0;  // not 0; below 0: of the watch
+  std::int64_t alert_id = 0;  // not 0; below 0: an alert of the watch
   Utime raised;
 };
 
@@ -80,12 +80,12 @@ struct Order {
   enum class Kind : std::uint8_t { kSilence, kSettings, kName };
   enum class Mode : std::uint8_t { kOpenWater, kHarbour };
   Kind kind = Kind::kSilence;
-  Mode mode = Mode::kOpenWater;  // of settings, as the rest; nullopt: as the config says
+  Mode mode = Mode::kOpenWater;  // `mode` to `cpa_limit_m` are of kSettings; nullopt: as the config says
   std::optional<double> guard_zone_range_m = {};
   std::optional<double> guard_zone_from_deg = {};
   std::optional<double> guard_zone_to_deg = {};
   std::optional<double> cpa_limit_m = {};
-  std::int64_t track_id = 0;  // of a name, as the next
+  std::int64_t track_id = 0;  // `track_id` and `name` are of kName
   std::string name = {};      // empty: as it was called before
 
   friend bool operator==(const Order&, const Order&) = default;

@@ -45,8 +45,8 @@ class Slots {
   using Parts = std::map<int, SharedBytes>;
   struct Slot {
     bool has_begun = false;
-    std::int64_t begun_group = 0;  // the one of which a part was sent last
-    Parts begun;                   // its unsent rest
+    std::int64_t begun_group = 0;  // the group of which a part was sent last
+    Parts begun;                   // unsent parts of begun_group
     std::int64_t next_group = 0;
     Parts next;
 
@@ -54,7 +54,7 @@ class Slots {
   };
 
   void Forget(Parts& parts);
-  // Of a process that has ended, say. @return false when all wait to be sent
+  // Forgets a slot without waiting frames, as of a process that has ended. @return false when all slots have frames that wait
   bool ForgetAnIdleOne();
 
   std::map<Key, Slot> slots_;

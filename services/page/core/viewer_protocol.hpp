@@ -23,7 +23,7 @@ struct ViewerChannel {
   std::string schema;       // a FileDescriptorSet
 };
 
-/// Of both subprotocols the messages used here are the same. The first is preferred.
+/// Subprotocols, the preferred one first. The messages used here are the same in both.
 inline constexpr std::array<std::string_view, 2> kViewerProtocols{"foxglove.sdk.v1", "foxglove.websocket.v1"};
 
 /// @param offered  the header `Sec-WebSocket-Protocol`
@@ -42,7 +42,7 @@ std::string AdvertiseText(std::span<const ViewerChannel> channels);
 enum class StatusLevel : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
 std::string StatusText(StatusLevel level, const std::string& message);
 
-/// What stands before each message: opcode, number of the subscription, time of reception in nanoseconds.
+/// Head before each message: opcode, number of the subscription, time of reception in nanoseconds.
 inline constexpr std::size_t kMessageDataHeadBytes = 1 + 4 + 8;
 std::array<std::uint8_t, kMessageDataHeadBytes> MessageDataHead(std::uint32_t subscription, Utime time);
 

@@ -26,7 +26,7 @@ struct ViewerMessage {
 class ViewerQueue {
  public:
   static constexpr std::size_t kMaxMessages = 64;                                // of a channel
-  static constexpr std::size_t kMaxChannelBytes = std::size_t{2} * 1024 * 1024;  // of a channel, unless it is one message: some clouds
+  static constexpr std::size_t kMaxChannelBytes = std::size_t{2} * 1024 * 1024;  // of a channel; a single larger message, as some clouds are, is kept
   static constexpr std::size_t kMaxBytes = std::size_t{16} * 1024 * 1024;
 
   void Put(ViewerMessage message);

@@ -134,7 +134,7 @@ struct Film::Implementation {
     sources_text = SourcesTextOf(shown);
   }
 
-  // Of a request; empty where it can be answered. The mutex is held.
+  // Why a request for this source is refused; empty where it can be answered. The mutex is held.
   std::string RefusalOf(int source) const {
     if (source < 0 || std::cmp_greater_equal(source, sources.size())) return kNoSource;
     return sources[static_cast<std::size_t>(source)].facts.is_indexed ? "" : kBeingIndexed;

@@ -215,7 +215,7 @@ std::vector<std::uint8_t> ToIndexBytes(const LogIdentity& identity, const LogPar
   Out out;
   out.bytes().reserve(kMagic.size() + 4096 + kEntryBytes * part.entries.size() + kCellBytes * part.cells.size() + 64 * part.events.size());
   out.PutRaw(kMagic);
-  out.PutText(bus::SchemaDigest());  // the channel table goes with it
+  out.PutText(bus::SchemaDigest());  // the index depends on the channel table
   out.Put(static_cast<std::uint32_t>(bus::kChannels.size()));
   for (const auto& channel : bus::kChannels) out.PutText(channel.name);
   out.Put(identity.size_bytes);

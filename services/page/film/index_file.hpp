@@ -18,7 +18,7 @@ namespace lookout::page {
 struct LogIdentity {
   std::int64_t size_bytes = 0;
   std::int64_t modified_ns = 0;  // since 1970 UTC
-  std::string digest;            // SHA-256 of its first and last 64 KiB, hexadecimal
+  std::string digest;            // SHA-256 of the log's first and last 64 KiB, hexadecimal
 
   bool operator==(const LogIdentity&) const = default;
 };
@@ -28,7 +28,7 @@ LogIdentity IdentityOf(const std::filesystem::path& log);
 
 std::filesystem::path IndexFileOf(const std::filesystem::path& log);
 
-/// Little-endian; the same for the same log. Its last 64 bytes are the SHA-256 of all before.
+/// Little-endian; equal logs give equal bytes. Its last 64 bytes are the SHA-256 of all before.
 std::vector<std::uint8_t> ToIndexBytes(const LogIdentity& identity, const LogPart& part);
 
 /// @return nullopt when the bytes are no index, or torn, or another log's, or of another version, or name places that the log cannot have

@@ -19,7 +19,7 @@ namespace {
 
 using std::chrono::microseconds;
 
-// Offsets in the wire types of the members that an index needs. Types never change: tests/golden/fingerprints.txt.
+// Offsets, in the wire types, of the members that an index needs. The types never change: tests/golden/fingerprints.txt.
 constexpr std::size_t kMarkOffset = 24;       // of LIDAR_PACKETS marks, of NAV_RAW kind
 constexpr std::size_t kEndUtimeOffset = 32;   // of the messages of a scan
 constexpr std::size_t kScanPartOffset = 40;   // of LIDAR_SCAN, LIDAR_SCAN_2; part_index and num_parts

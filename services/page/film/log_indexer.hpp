@@ -20,8 +20,8 @@ namespace lookout::page {
 /// Whether messages of the channel get an entry: a page shows them. Raw channels and the simulator's truth get none; their losses are counted.
 bool HasEntries(std::string_view channel);
 
-/// Of large messages only the heads are read. Times of events never go back: where the host's clock was set back, later events are told as so much
-/// later, and a "gap" says so. A message that is of another type than its channel's, or is none, gets no entry.
+/// Only the heads of large messages are read. Times of events never go back: where the host's clock was set back, later events are told as so much
+/// later, and a "gap" says so. Bytes that are no message of the channel's type get no entry.
 class LogIndexer {
  public:
   /// @param is_growing  an event at the end that is not whole is waited for; else it is damage
@@ -42,7 +42,7 @@ class LogIndexer {
     Utime time;
     std::int8_t state = -1;
   };
-  // Of the parts of a message, as its head says.
+  // Part index and number of parts in the head of a message.
   struct Parts {
     std::int64_t index = 0;
     std::int64_t count = 1;

@@ -12,11 +12,11 @@ namespace lookout::page {
 
 /// A message that can be shown, in the order of the file.
 struct LogEntry {
-  Utime time;                     // of the event; never before that of the entry before it (LogIndexer)
+  Utime time;                     // of the event; never before the time of the previous entry (LogIndexer)
   std::int64_t utime_us = 0;      // of the message
   std::int64_t offset_bytes = 0;  // of the event in the file
   std::uint32_t size_bytes = 0;   // of the message
-  std::uint32_t duration_us = 0;  // of its scan: end_utime_us - utime_us; 0 where the message has no end
+  std::uint32_t duration_us = 0;  // of the message's scan: end_utime_us - utime_us; 0 where the message has no end
   std::uint16_t channel = 0;      // index into the channel table
   std::uint16_t part = 0;         // part_index; of HEALTH the process, an index into `processes`
 
@@ -52,12 +52,12 @@ struct FilmEvent {
 };
 
 inline constexpr std::size_t kMaxFilmTextBytes = 240;
-inline constexpr std::size_t kMaxFilmEvents = 50'000;  // of one log; later ones are not told
+inline constexpr std::size_t kMaxFilmEvents = 50'000;  // of one log; later events are left out
 inline constexpr std::size_t kMaxFilmProcesses = 64;
 
 struct LogPart {
   std::vector<LogEntry> entries;
-  std::vector<SecondCell> cells;       // by time; a second that goes on in the next part is in both
+  std::vector<SecondCell> cells;       // by time; a second that goes on in the next part is in both parts
   std::vector<FilmEvent> events;       // by time, nearly
   std::vector<std::string> processes;  // all so far
 

@@ -259,8 +259,8 @@ struct LookBack::Implementation {
     auto from = recording.timeline().end() - options.span;
     while (spool.num_files() > 1) {
       const bool is_too_large = spool.num_bytes() > room_bytes;
-      // As it is shown: where the host's clock was set back, that is later than it was written. While the recording has a file open, its bytes stay
-      // on the disk.
+      // `last` is the time that is shown: where the host's clock was set back, the file was written earlier. While the recording has a file open, the
+      // file's bytes stay on the disk.
       const auto number = spool_numbers.find(spool.oldest_file());
       const auto last = number == spool_numbers.end() ? std::nullopt : recording.LastOf(number->second);
       if (!is_too_large && last && *last >= from) break;
@@ -270,10 +270,10 @@ struct LookBack::Implementation {
       spool.DropOldest();
     }
     recording.DropBefore(from);
-    // Whole files are dropped, so it may be short of some.
+    // Whole files are dropped, so the spool may be short by less than a file.
     if (recording.timeline().is_empty() || 10 * (recording.timeline().end() - recording.timeline().begin()) < 9 * options.span) return;
     const std::scoped_lock status_lock(status_mutex);
-    status.shortage.clear();  // it holds all that it should again
+    status.shortage.clear();  // the spool holds the whole span again
   }
 
   void TellShortage() {
@@ -292,7 +292,7 @@ struct LookBack::Implementation {
     sources_text = std::move(text);
   }
 
-  // Of what the thread does: told when it changes.
+  // Keeps the fault of the thread's work, and reports it when it changes.
   void SetFault(const std::string& fault) {
     {
       const std::scoped_lock lock(status_mutex);
@@ -333,12 +333,12 @@ struct LookBack::Implementation {
   mutable std::mutex mutex;
   Recording recording;
 
-  mutable std::mutex status_mutex;  // guards these members; never held while a disk is used
+  mutable std::mutex status_mutex;  // guards the next three members; never held while a disk is used
   LookBackStatus status;
   std::string turn_fault;
   std::string sources_text = "[]";
 
-  // Of the thread alone.
+  // Members that the thread alone uses.
   Spool spool;
   fs::path spool_file;
   std::uint16_t spool_number = 0;
@@ -355,11 +355,11 @@ struct LookBack::Implementation {
   int num_periods = 0;
   int retry_periods = 0;
   bool is_stop_told = false;
-  std::int64_t room_bytes = options.max_bytes;  // of the spool: the room that the disk's reserve leaves to it
+  std::int64_t room_bytes = options.max_bytes;  // room that the disk's reserve leaves to the spool
   std::string room_text;
   std::optional<Utime> end_told;
 
-  std::thread thread;  // last: it begins when all else is there
+  std::thread thread;  // last, so that the thread begins when all other members are there
 };
 
 LookBack::LookBack(LookBackOptions options) : implementation_(std::make_unique<Implementation>(std::move(options))) {}

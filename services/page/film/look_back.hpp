@@ -18,9 +18,9 @@
 namespace lookout::page {
 
 struct LookBackOptions {
-  std::filesystem::path spool_folder;                             // of this process alone; made where it is missing
+  std::filesystem::path spool_folder;                             // of this process alone; made where missing
   std::optional<std::filesystem::path> recorder_folder = {};      // log_folder of recorder.txtpb
-  std::chrono::seconds span = std::chrono::minutes(10);           // how far one can look back
+  std::chrono::seconds span = std::chrono::minutes(10);           // how far a page can look back
   std::int64_t max_bytes = std::int64_t{2} * 1024 * 1024 * 1024;  // of the spool
   io::DiskReserve reserve{0};                                     // of the spool's disk; see ReserveAt
   std::function<std::int64_t(const std::filesystem::path& folder)> free_bytes = io::FreeBytes;
@@ -33,8 +33,8 @@ struct LookBackOptions {
 /// Counts since the start.
 struct LookBackStatus {
   bool is_following = false;  // the recorder's log; else the spool is written
-  std::string fault = {};     // why the spool is not written; empty when it is, or is not needed
-  std::string shortage = {};  // why it holds less than the span; empty when it holds all, or is not needed
+  std::string fault = {};     // why the spool is not written; empty when the spool is written or is not needed
+  std::string shortage = {};  // why the spool holds less than the span; empty when it holds the whole span, or is not needed
   std::int64_t num_spooled = 0;
   std::int64_t num_spooled_bytes = 0;
   std::int64_t num_lost = 0;  // messages that the spool lacks: the disk was too slow, full or failed
@@ -42,15 +42,15 @@ struct LookBackStatus {
 
 /// Source 0, growing. The spool is a log for each minute, SPOOL/look-back-N.lcmlog.partial: never committed, so never synced, and gone with the
 /// process; the next start removes the files of a killed process. Once a second the recorder's folder is looked at: when its newest log grows, that
-/// is followed and no spool is written; when it has not grown for 5 s, the spool is written again. It leaves the reserve of the disk free: where less
-/// is left it gives up its oldest minutes, and below kLeastBytes ends.
+/// log is followed and no spool is written; when the log has not grown for 5 s, the spool is written again. The spool leaves the reserve of the disk
+/// free: where less is left the spool gives up its oldest minutes, and below kLeastBytes ends.
 class LookBack final : public Recordings {
  public:
   /// Starts its thread.
   /// @throws std::runtime_error when the folder of the spool cannot be made
   explicit LookBack(LookBackOptions options);
 
-  /// A spool of less would hold some seconds.
+  /// A smaller spool would hold no more than some seconds.
   static constexpr std::int64_t kLeastBytes = 10'000'000;
 
   /// Removes the spool.

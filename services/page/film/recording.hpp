@@ -23,10 +23,11 @@ class Recording {
   /// @return its number. @throws std::runtime_error when it cannot be opened, or there were 65 535
   std::uint16_t AddLog(const std::filesystem::path& log);
 
-  /// Adds entries of a log. A log that begins before the one before ends is shown behind it, and an event says by how much.
+  /// Adds entries of a log. A log that begins before the end of the previous log is shown behind that log, and an event says by how much it was
+  /// shifted.
   void Append(std::uint16_t log, const LogPart& part);
 
-  /// Forgets entries before this time, and closes logs without any left, but for the last.
+  /// Forgets entries before this time, and closes logs without entries, except the last log.
   void DropBefore(Utime time);
 
   /// Closes logs that were removed: else their bytes stay on the disk, and they were removed to make room. Their messages are left out of answers.
@@ -43,13 +44,13 @@ class Recording {
   /// The bytes of the first RUN_INFO; empty: there is none, or it cannot be read.
   std::vector<std::uint8_t> RunInfo();
 
-  /// Messages that were not any more where the index says: a log was cut, or its index is forged.
+  /// Messages that were not found where the index says: a log was cut, or its index is forged.
   std::int64_t num_missing() const { return num_missing_; }
 
  private:
   struct Log {
     std::filesystem::path file;
-    std::unique_ptr<bus::LogReader> reader;  // nullptr: it was removed
+    std::unique_ptr<bus::LogReader> reader;  // nullptr: the file was removed
     bool is_begun = false;
     std::chrono::microseconds shift{0};
     Utime last{std::chrono::microseconds(kMinUtimeUs)};

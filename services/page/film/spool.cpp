@@ -79,7 +79,7 @@ bool Spool::Write(const std::vector<SpooledMessage>& messages, std::int64_t max_
     fault_.clear();
     return true;
   } catch (const std::exception& error) {
-    is_open_ = false;  // it may end in a torn event
+    is_open_ = false;  // the file may end in a torn event
     // On a full disk a file can be begun, and each attempt would leave an empty one and its descriptor behind.
     if (!files_.empty() && files_.back().num_bytes == 0) files_.pop_back();
     fault_ = error.what();

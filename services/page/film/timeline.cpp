@@ -27,7 +27,7 @@ bool MakesScans(ChannelIndex channel) {
 auto FirstAt(const std::deque<Place>& places, Utime time) { return std::ranges::lower_bound(places, time, {}, &Place::time); }
 auto FirstAfter(const std::deque<Place>& places, Utime time) { return std::ranges::upper_bound(places, time, {}, &Place::time); }
 
-// Of a second publisher.
+// Whether this part was found already: a second publisher may have sent it too.
 bool HasPart(const std::vector<Place>& places, std::uint16_t part) {
   return std::ranges::any_of(places, [part](const Place& place) { return place.part == part; });
 }
@@ -80,7 +80,7 @@ void Timeline::NoteScan(const Place& place) {
     if (scan.utime_us != place.utime_us || place.time - scan.first > kScanSpread) continue;
     scan.end_utime_us = std::max(scan.end_utime_us, place.utime_us + place.duration_us);
     scan.last = place.time;
-    for (std::size_t k = i; k < scans_.size(); ++k) scans_[k].whole = place.time;  // no time comes before an earlier one
+    for (std::size_t k = i; k < scans_.size(); ++k) scans_[k].whole = place.time;  // so that the times of `whole` never go back
     return;
   }
   scans_.push_back({place.utime_us, place.utime_us + place.duration_us, place.time, place.time, place.time});

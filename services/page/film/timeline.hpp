@@ -30,7 +30,7 @@ struct Scan {
   std::int64_t end_utime_us = 0;
   Utime first;  // event of LIDAR_SCAN, SEGMENTS, OBSTACLES or TRACKS
   Utime last;
-  Utime whole;  // last, or that of a scan before it that was whole later
+  Utime whole;  // the scan's `last`, or that of an earlier scan, whichever is later
 };
 
 struct Moment {
@@ -53,7 +53,7 @@ class Timeline {
   void DropBefore(Utime time);
 
   bool is_empty() const { return !begin_; }
-  /// Precondition of these: not empty.
+  /// Precondition of begin and end: not empty.
   Utime begin() const { return *begin_; }
   Utime end() const { return end_; }
 

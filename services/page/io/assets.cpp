@@ -10,7 +10,7 @@ namespace lookout::page {
 
 namespace {
 
-// Of checksum and size: a browser asks by it whether its copy is current, so each version of the program must have another.
+// A tag of checksum and size. A browser asks by the tag whether its copy is current, so the tag must differ in each version of the program.
 std::string TagOf(Bytes bytes) {
   const auto sum = crc32_z(0, bytes.data(), bytes.size());
   std::array<char, 40> text{};
@@ -25,7 +25,7 @@ std::vector<std::uint8_t> Inflated(Bytes gzip_bytes) {
   z_stream stream{};
   if (inflateInit2(&stream, kGzip) != Z_OK) throw std::runtime_error("zlib does not start");
   const std::unique_ptr<z_stream, int (*)(z_stream*)> guard(&stream, inflateEnd);
-  stream.next_in = const_cast<Bytef*>(gzip_bytes.data());  // zlib only reads it
+  stream.next_in = const_cast<Bytef*>(gzip_bytes.data());  // zlib only reads these bytes
   stream.avail_in = static_cast<uInt>(gzip_bytes.size());
   std::vector<std::uint8_t> plain;
   std::array<std::uint8_t, 65536> block{};

@@ -38,7 +38,7 @@ class Assets {
   struct Entry {
     Asset asset;
     std::string tag;
-    SharedBytes plain = nullptr;  // made when it is asked for first
+    SharedBytes plain = nullptr;  // inflated at the first request for it
   };
   std::map<std::string, Entry, std::less<>> entries_;
 };

@@ -170,7 +170,7 @@ Client::Found Client::Find(Recordings& recordings, const Question& question) try
   for (auto& message : answer.messages) {
     const FrameHead head{static_cast<std::uint8_t>(source), message.channel, id, message.time};
     found.frames.push_back(std::make_shared<const std::vector<std::uint8_t>>(ToFrame(head, message.bytes)));
-    message.bytes = {};  // not all of it twice
+    message.bytes = {};  // frees each message as soon as its frame is made, so that an answer is not held twice
   }
   found.text = AnswerText(id, source, answer, found.frames.size());
   return found;

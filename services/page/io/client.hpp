@@ -94,7 +94,7 @@ class Client : public std::enable_shared_from_this<Client> {
   std::map<int, double> indexing_;  // shares to be told, by source
 
   std::deque<Question> questions_;
-  bool is_asking_ = false;  // one is with the disk, or its answer is being sent
+  bool is_asking_ = false;  // a question is with the disk thread, or its answer is being sent
   Found found_;
   bool is_turn_of_live_ = false;
 
@@ -102,8 +102,8 @@ class Client : public std::enable_shared_from_this<Client> {
   SharedBytes sending_frame_;
   std::string sending_text_;
   std::uint64_t num_sent_ = 0;           // binary frames
-  std::uint64_t num_confirmed_ = 0;      // of them
-  std::deque<std::size_t> unconfirmed_;  // their sizes
+  std::uint64_t num_confirmed_ = 0;      // binary frames that the page has confirmed
+  std::deque<std::size_t> unconfirmed_;  // sizes of frames that are not confirmed
   std::size_t num_unconfirmed_bytes_ = 0;
 };
 

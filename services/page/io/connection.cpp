@@ -69,7 +69,7 @@ void Connection::Start() { AwaitRequest(kFirstPatience); }
 
 void Connection::LetGo() {
   is_let_go_ = true;
-  stream_.close();  // handlers that wait for it hear of it
+  stream_.close();  // ends waiting handlers with an error
 }
 
 void Connection::Enter(Stage stage) {

@@ -40,7 +40,7 @@ class Counts {
   std::map<std::string, std::int64_t, std::less<>> numbers_;
 };
 
-/// One of a count of what is there now, for as long as it lives.
+/// Adds 1 to a count of things that are there now, for as long as this object lives.
 class Place {
  public:
   Place(std::shared_ptr<Counts> counts, std::string_view name) : counts_(std::move(counts)), name_(name) { counts_->Add(name_); }
@@ -54,7 +54,7 @@ class Place {
 
  private:
   std::shared_ptr<Counts> counts_;
-  std::string_view name_;  // of a constant
+  std::string_view name_;  // refers to a constant
 };
 
 }  // namespace lookout::page

@@ -15,7 +15,7 @@ namespace lookout::page {
 struct FoxgloveOptions {
   std::string bind_address = "127.0.0.1";  // numeric
   int port = 0;                            // 0: any
-  bool waits_for_port = false;             // where it cannot be had now it is tried again and again, and Fault() says so
+  bool waits_for_port = false;             // where the port cannot be had now, the server tries again and again, and Fault() says so
   std::vector<std::string> allowed_origins = {};
   int max_clients = 4;
   std::string name = {};     // of the server
@@ -34,10 +34,10 @@ class FoxgloveServer {
   FoxgloveServer(const FoxgloveServer&) = delete;
   FoxgloveServer& operator=(const FoxgloveServer&) = delete;
 
-  /// 0 while it waits for it.
+  /// 0 while the server waits for its port.
   int port() const;
 
-  /// What keeps viewers away, a sentence; empty: nothing.
+  /// The fault that keeps viewers away, as a sentence; empty: no fault.
   std::string Fault() const;
 
   /// Whether any viewer has subscribed the channel: else nobody needs its messages.

@@ -37,7 +37,7 @@ struct Hub {
   const std::shared_ptr<Counts> counts;
   std::array<std::atomic<int>, kMaxChannels> num_watching{};  // clients, by channel
   std::set<std::shared_ptr<Client>> clients = {};
-  std::set<Connection*> connections = {};  // those that have not become clients
+  std::set<Connection*> connections = {};  // connections that have not become clients
   std::string sources = "[]";              // JSON
   std::size_t num_answer_bytes = 0;        // found and not yet sent, of all clients
   bool is_ending = false;

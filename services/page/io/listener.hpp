@@ -49,14 +49,14 @@ class Listener {
   boost::asio::steady_timer pause_;
   bool is_closed_ = false;
   std::atomic<int> port_ = 0;
-  mutable std::mutex mutex_;  // guards the next
+  mutable std::mutex mutex_;  // guards fault_
   std::string fault_;
 };
 
 /// Runs the context until it is stopped, over whatever a connection throws; most likely there was no memory.
 void RunThroughFaults(boost::asio::io_context& context, const std::function<void()>& on_fault);
 
-/// Small messages at once, and a bound on what the kernel holds for a peer that does not read.
+/// Sends small messages at once, and bounds the bytes that the kernel holds for a peer that does not read.
 void SetServedOptions(boost::asio::ip::tcp::socket& socket);
 
 }  // namespace lookout::page

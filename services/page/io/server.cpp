@@ -89,10 +89,10 @@ struct Server::Implementation {
       ++num_staying;
       if (least == nullptr || worth(one) < worth(least)) least = one;
     }
-    // Such as were let go a moment ago are still counted.
+    // Connections that were let go a moment ago do not count.
     if (num_staying < hub.options.max_connections) return true;
     if (least == nullptr) return false;
-    // Each that was let go holds memory until the disk has answered it.
+    // Each connection that was let go holds memory until the disk thread has answered it.
     if (static_cast<std::int64_t>(hub.connections.size()) >= 2 * hub.options.max_connections) return false;
     hub.counts->Add("connections_let_go");
     {
@@ -155,7 +155,7 @@ struct Server::Implementation {
   Listener listener;
   asio::steady_timer tick{hub.context};
   SteadyTime end_since{};
-  mutable std::mutex faults_mutex;  // guards these members
+  mutable std::mutex faults_mutex;  // guards crowd_text and crowded_at
   std::string crowd_text;
   std::optional<SteadyTime> crowded_at;
   std::atomic<bool> are_sources_new = false;

@@ -28,7 +28,7 @@ struct Asset {
 struct ServerOptions {
   std::string bind_address = "127.0.0.1";    // numeric
   int port = 0;                              // 0: any
-  bool waits_for_port = false;               // where it cannot be had now it is tried again and again, and Faults() says so
+  bool waits_for_port = false;               // where the port cannot be had now, the server tries again and again, and Faults() says so
   std::vector<std::string> host_names = {};  // that `Host` may name besides the address bound to, localhost and 127.0.0.1; without port
   int max_clients = 16;                      // WebSockets
   int max_connections = 64;

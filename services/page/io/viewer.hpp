@@ -44,7 +44,7 @@ struct ViewerHub {
   std::vector<std::atomic<int>> num_watching;  // viewers, by channel
   std::set<std::shared_ptr<Viewer>> viewers = {};
   bool is_ending = false;
-  boost::asio::io_context context{1};  // last, so that work that waits in it goes first
+  boost::asio::io_context context{1};  // last, so that work that waits in the context is destroyed first
 };
 
 class Viewer : public std::enable_shared_from_this<Viewer> {

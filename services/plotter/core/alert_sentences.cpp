@@ -15,7 +15,8 @@ namespace lookout::plotter {
 
 namespace {
 
-// Of this project's alerts in ALF and ACN: identifiers from 10000 on are free for makers, who name themselves by three letters.
+// Maker and first identifier of this project's alerts in ALF and ACN: identifiers from 10000 on are free for makers, who name themselves by three
+// letters.
 constexpr std::string_view kMaker = "LKO";
 constexpr int kFirstIdentifier = 10000;
 constexpr std::int64_t kMostInstance = 999'999;

@@ -13,7 +13,7 @@
 
 namespace lookout::plotter {
 
-/// Number of an alert in ALR and ACK: 001 to 997; 000 is the tracker's watch, 998 that of the plotter, 999 that there is no position.
+/// Number of an alert in ALR and ACK: 001 to 997; 000: no look-out, from the tracker's watch; 998: no look-out, from the plotter; 999: no position.
 int AlarmNumber(const Notice& notice);
 /// Alarm: threshold exceeded (A) while it holds, acknowledged (A) or not (V).
 std::string Alr(std::string_view talker, const Notice& notice, Utime time);
@@ -39,9 +39,9 @@ std::string Alc(std::string_view talker, std::span<const ToldNotice> notices, in
 /// @param sequence  0 to 9, one more for each that is sent
 std::string Hbt(std::string_view talker, std::chrono::seconds period, bool is_well, int sequence);
 
-/// What a received sentence asks for.
+/// The command in a received sentence.
 struct AlertCommand {
-  // ACK alone acknowledges; of ACN: A, Q, O, S.
+  // ACK can only acknowledge; ACN has the letters A, Q, O and S.
   enum class Kind : char { kAcknowledge = 'A', kTellAgain = 'Q', kHandOver = 'O', kSilence = 'S' };
   Kind kind = Kind::kAcknowledge;
   bool is_alarm_number = false;  // ACK
@@ -51,7 +51,7 @@ struct AlertCommand {
   bool operator==(const AlertCommand&) const = default;
 };
 
-/// That a command of ACN is refused.
+/// Answer that refuses a command of ACN.
 std::string Arc(std::string_view talker, const AlertCommand& command, Utime time);
 
 enum class LineKind { kCommand, kOther, kWrong };

@@ -16,12 +16,12 @@ struct LidarSightParams {
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
   double above_water_m = 0.0;                 // the lidar, with the boat level
   double min_range_m = 0.0;                   // of the segmenter
-  Sector field_of_view = {};                  // the same, azimuths of the lidar
+  Sector field_of_view = {};                  // of the segmenter, azimuths of the lidar
   Eigen::AlignedBox3d own_vessel_box_m = {};  // vessel frame; empty = none
   double reach_m = 0.0;                       // horizontal, from the lidar
 };
 
-/// Of the boat and its lidars, as far as its surroundings are made with it.
+/// Config of the boat and its lidars from which the surroundings are made.
 struct SurroundingsParams {
   std::vector<LidarSightParams> lidars;  // one, or two
   Eigen::AlignedBox3d own_vessel_box_m = {};
@@ -29,8 +29,8 @@ struct SurroundingsParams {
   bool takes_tentative = false;
 };
 
-/// One scan in whole degrees of bearing from the lidar, from the bow clockwise. A degree is looked into when of its columns more than half have a
-/// beam that gets past the own boat and is at the reach no higher than kTopM above the water, and not below it.
+/// One scan in whole degrees of bearing from the lidar, from the bow clockwise. A degree counts as looked into when more than half of its columns
+/// have a beam that passes the own boat and, at the reach, is between 0 and kTopM above the water.
 class LidarSight {
  public:
   static constexpr std::size_t kNumBearings = 360;
@@ -48,7 +48,7 @@ class LidarSight {
   struct Column {
     double azimuth_rad = 0.0;
     double step_rad = 0.0;                      // to the next column
-    double turned_rad = 0.0;                    // by which the bow has turned clockwise since
+    double turned_rad = 0.0;                    // how far the bow has turned clockwise since the column
     std::span<const float> azimuth_offset_rad;  // [rings]
     std::span<const float> range_m;             // [rings] of the nearest return; 0 = none
   };
@@ -64,7 +64,7 @@ class LidarSight {
 
   LidarSightParams params_;
   std::vector<float> elevation_rad_;
-  std::array<std::vector<std::uint16_t>, kNumBearings> rings_;  // [degrees of azimuth] whose beams get far
+  std::array<std::vector<std::uint16_t>, kNumBearings> rings_;  // [degrees of azimuth] rings whose beams reach far enough there
   std::array<int, kNumBearings> num_columns_{};
   std::array<int, kNumBearings> num_looking_{};
 };
@@ -75,12 +75,12 @@ class SectorSight {
   /// @param lidar_place_m  vessel frame, of each lidar
   SectorSight(std::span<const Eigen::Vector2d> lidar_place_m, const Eigen::AlignedBox3d& own_vessel_box_m, double reach_m);
 
-  /// @param lidars  in the order of the places; nullptr: of this one no scan came
+  /// @param lidars  in the order of the places; nullptr: no scan came from this lidar
   std::array<bool, kNumSectors> Looked(std::span<const LidarSight* const> lidars) const;
 
  private:
   static constexpr std::size_t kMostLidars = 2;
-  using Bearings = std::array<std::uint16_t, kMostLidars>;  // of one place, from each lidar
+  using Bearings = std::array<std::uint16_t, kMostLidars>;  // bearings of one place, from each lidar
 
   std::array<std::vector<Bearings>, kNumSectors> places_;
 };

@@ -54,7 +54,7 @@ std::string MavlinkWriter::Frame(Message message, std::string payload) {
   return frame;
 }
 
-// Fields stand in the order of their sizes, the greatest first; those of an extension behind them, as they were added.
+// Fields stand in the order of their sizes, the greatest first, then extension fields in the order in which they were added.
 std::string MavlinkWriter::Heartbeat(MavState state) {
   std::string payload;
   AppendLittleEndian(0, 4, payload);  // mode: of autopilots
@@ -106,7 +106,7 @@ std::vector<std::string> MavlinkWriter::StatusText(MavSeverity severity, std::st
     AppendLittleEndian(is_long ? text_id_ : 0, 2, payload);
     AppendLittleEndian(chunk, 1, payload);
     frames.push_back(Frame(kStatusText, std::move(payload)));
-    // Of several chunks the last is the one that is not full.
+    // Only the last of several chunks is not full, so that a receiver knows it.
     if (!is_long || part.size() < kTextBytes) return frames;
   }
 }

@@ -24,12 +24,12 @@ struct MavSectors {
   std::uint64_t time_us = 0;
   std::uint16_t min_distance_cm = 1;
   std::uint16_t max_distance_cm = 0;
-  std::array<std::uint16_t, kNumSectors> distance_cm{};  // max_distance_cm + 1: nothing within it
+  std::array<std::uint16_t, kNumSectors> distance_cm{};  // max_distance_cm + 1: nothing within max_distance_cm
 };
 
 /// OBSTACLE_DISTANCE_3D, frame MAV_FRAME_BODY_FRD: x ahead, y to starboard, z down.
 struct MavPoint {
-  std::uint32_t time_ms = 0;  // the same of all points of one look
+  std::uint32_t time_ms = 0;  // equal in all points of one look
   double x_m = 0.0;
   double y_m = 0.0;
   double z_m = 0.0;
@@ -44,11 +44,11 @@ class MavlinkWriter {
   MavlinkWriter(int system_id, int component_id)
       : system_id_(static_cast<std::uint8_t>(system_id)), component_id_(static_cast<std::uint8_t>(component_id)) {}
 
-  /// Of a computer on board without an autopilot.
+  /// HEARTBEAT of a computer on board without an autopilot.
   std::string Heartbeat(MavState state);
   std::string ObstacleDistance(const MavSectors& sectors);
   std::string ObstacleDistance3d(const MavPoint& point);
-  /// STATUSTEXT: one frame; of more than 50 bytes several, which a receiver joins.
+  /// STATUSTEXT: one frame; a text of more than 50 bytes goes out in several frames, which a receiver puts together.
   std::vector<std::string> StatusText(MavSeverity severity, std::string_view text);
 
   static constexpr std::size_t kPointFrameBytes = 40;  // at most
@@ -71,10 +71,11 @@ class MavlinkWriter {
   std::uint16_t text_id_ = 0;
 };
 
-/// Finds HEARTBEAT in what a link receives: of MAVLink 1 and 2, at any place, cut anywhere. The rest is passed over, whatever it is.
+/// Finds HEARTBEAT (MAVLink 1 and 2) in the bytes that a link receives, at any place and cut anywhere. All other bytes are skipped.
 class MavlinkReader {
  public:
-  /// @return how many heartbeats of an autopilot end in `bytes`: of right checksum, and not of a ground station or another computer on board
+  /// @return number of heartbeats that end in `bytes`, have a right checksum, and come from an autopilot: not from a ground station or another
+  ///         computer on board
   int CountHeartbeats(std::string_view bytes);
 
  private:

@@ -22,11 +22,11 @@ enum Pgn : std::uint32_t {
   kHeartbeat = 126993,
   kProductInformation = 126996,
 };
-// Of each device: what it sends and what it takes.
+// PGNs that each device sends, and PGNs that each device accepts.
 constexpr std::array<std::uint32_t, 6> kSentByEach{kAcknowledgement, kRequest, kAddressClaim, kPgnList, kHeartbeat, kProductInformation};
 constexpr std::array<std::uint32_t, 3> kTakenByEach{kRequest, kAddressClaim, kCommandedAddress};
 
-// Who cannot claim says so after up to 153 ms, as many may have to.
+// A device that cannot claim an address says so after a delay of up to 153 ms, as many devices may have to at once.
 constexpr std::uint64_t kMostDelays = 154;
 
 constexpr std::uint8_t kPriority = 6;
@@ -43,7 +43,7 @@ std::uint64_t LittleEndian(const std::vector<std::uint8_t>& bytes, std::size_t o
   return value;
 }
 
-// Of fixed length: behind the text 0xFF. What is no printable ASCII becomes a blank.
+// Adds a text of fixed length, filled up with 0xFF. Each byte that is no printable ASCII becomes a blank.
 void AddFixedText(std::vector<std::uint8_t>& bytes, const std::string& text) {
   constexpr std::size_t kFixedTextBytes = 32;
   for (std::size_t i = 0; i < kFixedTextBytes; ++i) {
@@ -69,7 +69,7 @@ N2kMessage NoMessage(std::uint32_t pgn, bool is_sent, std::uint8_t destination) 
 
 N2kMessage HeartbeatMessage(int number) {
   constexpr std::uint64_t kPeriodIn10Ms = std::chrono::milliseconds(N2kDevice::kHeartbeatPeriod).count() / 10;
-  constexpr std::uint8_t kOperational = 0xCF;  // both controllers' states are not told, equipment status 0, reserved bits set
+  constexpr std::uint8_t kOperational = 0xCF;  // states of both controllers not stated, equipment status 0, reserved bits set
   N2kMessage message{.pgn = kHeartbeat, .priority = 7, .payload = {}};
   AddLittleEndian(message.payload, kPeriodIn10Ms, 2);
   message.payload.insert(message.payload.end(), {static_cast<std::uint8_t>(number), kOperational, 0xFF, 0xFF, 0xFF, 0xFF});
@@ -219,9 +219,9 @@ bool N2kDevice::TakeClaim(std::uint8_t source, const N2kFrame& frame, microsecon
   const auto claimed = ClaimedNameOf(frame);
   if (!claimed) return false;
   const auto name = *claimed;
-  if (name == identity_.name) return true;  // ours, that came back
+  if (name == identity_.name) return true;  // our own claim, which came back
   std::ranges::replace(owners_, std::optional(name), std::optional<std::uint64_t>());
-  if (source > kMostN2kAddress) return true;  // it has none
+  if (source > kMostN2kAddress) return true;  // the device has no address
   const bool is_ours = source == address_ && (state_ == State::kClaiming || state_ == State::kClaimed);
   if (is_ours && identity_.name < name) {
     if (MayAnswer(now)) Send(ClaimMessage(), address_);

@@ -26,27 +26,27 @@ std::uint64_t N2kName(std::uint32_t unique_number);
 /// 21 bits out of a text, the same on each computer and at each start.
 std::uint32_t UniqueNumberOf(std::string_view text);
 
-/// The NAME in a claim of an address. nullopt: the frame is none.
+/// The NAME in a claim of an address. nullopt: the frame is no such claim.
 std::optional<std::uint64_t> ClaimedNameOf(const N2kFrame& frame);
 
 struct N2kIdentity {
   std::uint64_t name = 0;
   std::uint8_t preferred_address = 0;  // 0 to kMostN2kAddress
-  std::string model = {};              // these have at most 32 bytes, ASCII; the rest is cut off
+  std::string model = {};              // this text and the next two: ASCII, cut off after 32 bytes
   std::string software_version = {};
   std::string serial_number = {};
-  std::vector<std::uint32_t> sent_pgns = {};  // besides those of each device
+  std::vector<std::uint32_t> sent_pgns = {};  // besides the PGNs that each device sends
 };
 
-/// Begin tells who hears it which address is wanted. Where nobody contends for 250 ms it is ours. Of two NAMEs that want it the lower wins; who has
-/// lost takes the next address that nobody has been heard to have, and after the last says that it has none, and tries again after a minute. Time is
-/// host time passed.
+/// Begin tells the network which address this device wants. Where nobody contends for 250 ms the address is ours. Where two NAMEs want it the lower
+/// NAME wins; the loser claims the next address that no device was heard to have. After the last address the device says that it has none, and tries
+/// again after a minute. Time is host time passed.
 class N2kDevice {
  public:
   static constexpr std::chrono::milliseconds kClaimWait{250};
   static constexpr std::chrono::seconds kHeartbeatPeriod{60};
   static constexpr std::chrono::seconds kRetryPeriod{60};
-  /// To requests and contending claims, a second. A flood of them holds nobody up.
+  /// Most answers a second to requests and contending claims: a flood of these holds nobody up.
   static constexpr int kMostAnswers = 20;
 
   enum class State { kOff, kClaiming, kClaimed, kNoAddress };
@@ -58,16 +58,16 @@ class N2kDevice {
 
   explicit N2kDevice(N2kIdentity identity) : identity_(std::move(identity)), address_(identity_.preferred_address) {}
 
-  /// The network is there, or is there again: claims the address that it had last. Forgets who else has which.
+  /// The network is there, or is there again: claims the address that this device had last. Forgets the addresses of other devices.
   void Begin(std::chrono::microseconds now);
   /// Does what is due. Ten times a second or more.
   void Advance(std::chrono::microseconds now);
-  /// Any frame of the network. Those of other PGNs, and to others, are none of its business.
+  /// Reads any frame of the network. Frames of other PGNs, and frames to other devices, change nothing.
   ///
-  /// @return false where the frame cannot be: a request, a claim or a part of a commanded address of a wrong length
+  /// @return false where the frame is impossible: a request, a claim or a part of a commanded address of a wrong length
   bool Take(const N2kFrame& frame, std::chrono::microseconds now);
 
-  /// To be sent, in this order. Each is told once.
+  /// Messages to be sent, in this order. Each is returned once.
   std::vector<Sending> TakeSendings();
 
   State state() const { return state_; }
@@ -102,7 +102,7 @@ class N2kDevice {
   N2kIdentity identity_;
   std::uint8_t address_;
   State state_ = State::kOff;
-  std::chrono::microseconds claimed_{0};   // when it was claimed last
+  std::chrono::microseconds claimed_{0};   // when the address was claimed last
   std::chrono::microseconds next_try_{0};  // with kNoAddress
   std::optional<std::chrono::microseconds> cannot_claim_due_;
   std::chrono::microseconds next_heartbeat_{0};

@@ -12,15 +12,15 @@
 namespace lookout::plotter {
 
 inline constexpr std::uint8_t kN2kEverybody = 0xFF;
-/// The source of who has no address.
+/// The source of a device that has no address.
 inline constexpr std::uint8_t kN2kNoAddress = 0xFE;
 
 struct N2kMessage {
   std::uint32_t pgn = 0;
   std::uint8_t priority = 0;  // 0 (highest) to 7
   bool is_fast_packet = false;
-  std::vector<std::uint8_t> payload;         // up to 8 bytes; of a fast packet up to 223
-  std::uint8_t destination = kN2kEverybody;  // of a PGN that has one (PDU1)
+  std::vector<std::uint8_t> payload;         // up to 8 bytes; in a fast packet up to 223
+  std::uint8_t destination = kN2kEverybody;  // counts for PGNs with a destination (PDU1)
 };
 
 inline constexpr std::size_t kMostFastPacketBytes = 223;
@@ -50,21 +50,21 @@ N2kHeader HeaderOf(std::uint32_t can_id);
 /// Precondition: the payload has at most 8 bytes, of a fast packet at most kMostFastPacketBytes.
 std::vector<N2kFrame> FramesOf(const N2kMessage& message, std::uint8_t source, int sequence);
 
-/// What a gateway sends onto the network: "<id> <bytes>" CR LF, in hexadecimal digits.
+/// A line that a gateway sends onto the network: "<id> <bytes>" CR LF, in hexadecimal digits.
 std::string RawLine(const N2kFrame& frame);
 
-/// nullopt: it is no such line (its end is cut off), or the identifier has more than 29 bits.
+/// nullopt: the text is no such line (its end is cut off), or the identifier has more than 29 bits.
 std::optional<N2kFrame> ReadRawLine(std::string_view line);
 
 /// A frame that a gateway tells of.
 struct HeardFrame {
   N2kFrame frame;
-  bool is_echo = false;  // direction T: a program sent it through this gateway
+  bool is_echo = false;  // direction T: a program sent the frame through this gateway
 
   bool operator==(const HeardFrame&) const = default;
 };
 
-/// "hh:mm:ss.ddd <R or T> <id> <bytes>" without its end. nullopt: it is no such line. The time is not looked at but for its form.
+/// "hh:mm:ss.ddd <R or T> <id> <bytes>" without its end. nullopt: the text is no such line. Only the form of the time is checked.
 std::optional<HeardFrame> ReadHeardLine(std::string_view line);
 
 }  // namespace lookout::plotter

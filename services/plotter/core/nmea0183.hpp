@@ -1,5 +1,5 @@
-// Sentences of NMEA 0183 for the own ship and targets; those of alerts: alert_sentences. Each ends with CR LF and has at most 82 characters, as the
-// standard has it, whatever the texts in it are.
+// Sentences of NMEA 0183 for the own ship and targets; sentences of alerts are in alert_sentences. Each sentence ends with CR LF and has at most 82
+// characters, as the standard says, whatever texts it holds.
 #pragma once
 
 #include <cstdint>

@@ -63,7 +63,7 @@ void NoticeSchedule::RepeatEnded(std::chrono::microseconds now, std::vector<Due>
   }
 }
 
-// What is dangerous again is the same alert: its end is told no more.
+// An alert that is raised again after its end is the same alert with the next revision: its end is repeated no more.
 int NoticeSchedule::FirstRevision(const RaisedKey& key, const Notice& notice) {
   const auto ended = std::ranges::find(ended_, key, [this](const Ended& one) { return KeyFor(one.sent.notice); });
   if (ended != ended_.end()) {
@@ -89,7 +89,7 @@ std::vector<NoticeSchedule::Due> NoticeSchedule::Take(std::span<const Notice> no
     if (notice.is_old) continue;
     const auto found = sent_.find(key);
     if (found == sent_.end()) {
-      if (notice.state == NoticeState::kCleared) continue;  // nobody was told of it, or it was told already
+      if (notice.state == NoticeState::kCleared) continue;  // nobody was told of the alert, or its end was told already
       const int revision = FirstRevision(key, notice);
       due.push_back({notice, revision, false});
       sent_.emplace(key, Sent{notice, revision, now + kPeriod});

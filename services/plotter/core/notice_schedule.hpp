@@ -14,22 +14,22 @@
 
 namespace lookout::plotter {
 
-/// Key of a notice as long as it lives: the id of the alert; one of its own for each that is the plotter's own.
+/// Key of a notice as long as it lives: the id of the alert; each cause of the plotter's own notices has a key of its own.
 std::int64_t KeyOf(const Notice& notice);
 
-/// One raising of it: a tracker that began anew gives the same ids to other alerts.
+/// One raising of a notice: a tracker that began anew gives the same ids to other alerts.
 using RaisedKey = std::pair<std::int64_t, Utime>;
 RaisedKey RaisedKeyOf(const Notice& notice);
-/// The same as a text.
+/// Key of one raising, as a text.
 std::string SubjectOf(const Notice& notice);
 
-/// A warning that nobody has acknowledged is told anew after each so long.
+/// A warning that nobody acknowledges is raised again each time that this has passed.
 inline constexpr std::chrono::minutes kEscalateAfter{5};
 
-/// How often a warning has been told anew: 0 to 9, and after 9 comes 1. 0 of what wants no acknowledgement.
+/// How often a warning has been raised again: 0 to 9, and after 9 comes 1. 0 for a notice that wants no acknowledgement.
 int EscalationOf(const Notice& notice);
 
-/// A notice as it was told last.
+/// A notice in the state that was told last.
 struct ToldNotice {
   Notice notice;
   int revision = 1;  // 1 to 99: goes up with each change
@@ -40,8 +40,8 @@ struct ToldNotice {
 /// kEndedFor: else one lost message leaves an alarm standing. Time is host time passed.
 class NoticeSchedule {
  public:
-  /// kRaising: each raising of an alert is told by itself. kId: a receiver knows them by their ids alone, so what is raised anew under the id of
-  /// another is that one, changed.
+  /// kRaising: each raising of an alert is told by itself. kId: a receiver knows alerts by their ids alone, so a new alert under the id of an earlier
+  /// one is told as a change of that one.
   enum class Identity { kRaising, kId };
   explicit NoticeSchedule(Identity identity = Identity::kRaising) : identity_(identity) {}
 
@@ -52,33 +52,33 @@ class NoticeSchedule {
   struct Due {
     Notice notice;
     int revision = 1;        // 1 to 99: goes up with each change
-    bool is_repeat = false;  // of a notice that was told before: it can wait
+    bool is_repeat = false;  // the notice was told before, so it can wait
   };
 
-  /// @param notices  all that are there now; where the output has no words for sound, without it
+  /// @param notices  all notices that are there now; without sound where the output has no words for sound
   std::vector<Due> Take(std::span<const Notice> notices, std::chrono::microseconds now);
 
-  /// A new receiver knows of none.
+  /// All notices are due again: a new receiver knows none.
   void SendAnew();
 
-  /// Those that were told and are not over, by KeyOf.
+  /// Notices that were told and are not over, by KeyOf.
   std::vector<ToldNotice> Standing() const;
-  /// With the next Take.
+  /// Makes this notice due with the next Take.
   void TellAgain(const Notice& notice);
 
-  /// Those whose revisions the next process needs: standing ones, those that ended within kEndedFor, and those of the process before that were not
-  /// told yet.
+  /// Notices whose revisions the next process needs: standing notices, notices that ended within kEndedFor, and notices of the process before that
+  /// were not told yet.
   std::vector<ToldNotice> Kept() const;
 
-  /// Of the process before: its notices keep their revisions, and one that changed meanwhile has the next. No notice is made of them. After kEndedFor
-  /// they are forgotten.
+  /// Recalls the notices of the process before: an unchanged notice keeps its revision, a notice that changed meanwhile gets the next. None becomes
+  /// due by this. After kEndedFor they are forgotten.
   void Recall(std::span<const ToldNotice> notices);
 
  private:
   struct Sent {
     Notice notice;
     int revision = 1;
-    std::chrono::microseconds next{0};  // when it is told again
+    std::chrono::microseconds next{0};  // when the notice is told again
   };
   struct Ended {
     Sent sent;

@@ -21,12 +21,12 @@ class Sectors {
   void AddPoint(const Eigen::Vector2d& p_m) { Keep(IndexOf(p_m), p_m); }
   /// Each sector that the edge crosses gets the nearest place of the edge within it.
   void AddEdge(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
-  /// @param corners_m  of a closed outline; of one corner a point
+  /// @param corners_m  of a closed outline; a single corner is a point
   void AddOutline(std::span<const Eigen::Vector2d> corners_m);
 
   /// @return infinite where nothing is
   double distance_m(std::size_t sector) const { return distance_m_[sector]; }
-  /// Where that is. Precondition: distance_m(sector) is finite.
+  /// The place at distance_m. Precondition: distance_m(sector) is finite.
   const Eigen::Vector2d& nearest_m(std::size_t sector) const { return nearest_m_[sector]; }
 
  private:
@@ -43,12 +43,12 @@ class Sectors {
   std::array<Eigen::Vector2d, kNumSectors> nearest_m_{};
 };
 
-/// What a scan says of the surroundings.
+/// The surroundings of the boat, as one scan shows them.
 struct Look {
   Sectors sectors;
-  /// Nobody looked into the others, so that nothing in them means nothing: a gap of half a degree or more from the own boat to the reach.
+  /// False: nobody looked into the sector (a gap of half a degree or more from the own boat to the reach), so an empty sector need not be free.
   std::array<bool, kNumSectors> is_looked{};
-  double reach_m = 0.0;  // to which is_looked says so
+  double reach_m = 0.0;  // range to which is_looked holds
 };
 
 }  // namespace lookout::plotter

@@ -1,5 +1,4 @@
-// Signal K deltas (specification 1.7 and its targets): one JSON text each, on one line that ends with LF. Units are those of Signal K: rad, m, m/s,
-// s.
+// Signal K deltas (specification 1.7 and its targets): one JSON text each, on one line that ends with LF. Units as in Signal K: rad, m, m/s, s.
 #pragma once
 
 #include <cstdint>
@@ -27,14 +26,14 @@ std::string VesselContext(std::string_view boat, int place);
 std::string TargetName(const Target& target);
 /// Name, position, course, speed, size, closest approach (hull to hull).
 std::string TargetDelta(std::string_view context, const Target& target, Utime time);
-/// Its end: position, course, speed and closest approach are null.
+/// The end of a target: position, course, speed and closest approach are null.
 ///
-/// @param new_name  for displays that keep the last position, and show the name beside it; empty: it keeps its own
+/// @param new_name  for displays that keep the last position, and show the name beside it; empty: the target keeps its name
 std::string TargetEndDelta(std::string_view context, Utime time, std::string_view new_name = {});
 
-/// notifications.lookout.<word>: warn for a caution, alarm for a warning; with sound where it is the one that sounds; alert for one that is over and
-/// was not acknowledged; normal when it is over. It says when it was raised, and that it is acknowledged, wherever that was done: then the server's
-/// own status says so, too.
+/// notifications.lookout.<word>: warn for a caution, alarm for a warning; with sound where this notice is the one that sounds; alert for a notice
+/// that is over and was not acknowledged; normal for other notices that are over. The delta says when the alert was raised, and that it is
+/// acknowledged, wherever that was done: then the server's own status says so, too.
 std::string NoticeDelta(const Notice& notice, std::string_view word, Utime time);
 
 /// Names one raising of an alert, and one escalation of it. A server remembers acknowledgements by path: a user hears nothing of a new alert under an
@@ -47,10 +46,10 @@ std::string NoticeSubscription();
 /// The present state of a notification at a server.
 struct NoticeEcho {
   std::string word;
-  bool is_raised = false;        // it is not normal
-  bool is_acknowledged = false;  // by its notifications API
-  /// It is an alarm or a warning without sound, or was set to normal, and not by that API: as older displays acknowledge. A notification that was
-  /// sent without sound comes back so, too.
+  bool is_raised = false;        // the notification's state is not normal
+  bool is_acknowledged = false;  // by the server's notifications API
+  /// The notification is an alarm or a warning without sound, or was set to normal, and not by that API: as older displays acknowledge. A
+  /// notification that was sent without sound comes back so, too.
   bool is_quiet = false;
 };
 

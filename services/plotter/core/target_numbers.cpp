@@ -33,7 +33,7 @@ std::optional<int> TargetNumbers::Of(std::int64_t target_id) const {
   return found == number_of_.end() ? std::nullopt : std::optional(found->second);
 }
 
-// The number that has been free for longest; of those that were never used the lowest.
+// The lowest number that was never used; else the number that has been free for longest.
 std::optional<int> TargetNumbers::Free(int end, std::chrono::microseconds now) const {
   std::optional<int> best;
   for (int number = 0; number < end; ++number) {

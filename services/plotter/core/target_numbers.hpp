@@ -13,8 +13,8 @@
 
 namespace lookout::plotter {
 
-/// A target keeps its number as long as it lives. The number of a lost target is given to no other for a while, so that a plotter does not draw the
-/// way of one into that of another. The last kReserved numbers are for dangerous targets, so that a crowded berth does not use up all.
+/// A target keeps its number as long as it lives. The number of a lost target is given to no other for a while, so that a plotter does not connect
+/// the ways of two targets. The last kReserved numbers are for dangerous targets, so that a crowded berth does not use up all.
 ///
 /// Time is host time passed, as of PassedTime.
 class TargetNumbers {
@@ -24,14 +24,14 @@ class TargetNumbers {
 
   explicit TargetNumbers(std::chrono::microseconds quarantine) : quarantine_(quarantine) {}
 
-  /// Numbers for all that have none, as far as there are any.
-  /// @param targets  of now, the most dangerous first; those that are lost have been released
+  /// Gives numbers to all targets that have none, as long as numbers are free.
+  /// @param targets  present targets, the most dangerous first; lost targets have been released
   void Assign(std::span<const Target> targets, std::chrono::microseconds now);
 
   /// Ends the target: its number is in quarantine from now on.
   void Release(std::int64_t target_id, std::chrono::microseconds now);
 
-  /// @return 0 to 99; nullopt: it has none
+  /// @return 0 to 99; nullopt: the target has no number
   std::optional<int> Of(std::int64_t target_id) const;
 
   /// Targets that got none in the last Assign.

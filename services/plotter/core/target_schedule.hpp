@@ -19,25 +19,26 @@ class TargetSchedule {
   /// The last report of a target.
   struct Sent {
     Target target;
-    Utime target_time = {};                         // to which it was propagated
-    int number = -1;                                // -1: it had none
-    std::optional<std::chrono::microseconds> time;  // nullopt: it is to be sent anew
+    Utime target_time = {};                         // time to which the target was propagated
+    int number = -1;                                // -1: the target had no number
+    std::optional<std::chrono::microseconds> time;  // nullopt: the target is to be sent anew
   };
 
   explicit TargetSchedule(std::chrono::microseconds period) : period_(period) {}
 
-  /// Those that are new, or were sent a period ago: the dangerous that are new first, in the order of `targets`; then by how long they have waited,
-  /// where a second of the dangerous counts as four, so that an output with little room gets round all of them.
+  /// Targets that are new, or were sent a period ago. New dangerous targets come first, in the order of `targets`; then the others by how long they
+  /// have waited, where a second of a dangerous target counts as four, so that an output with little room gets round all targets.
   std::vector<const Target*> Due(std::span<const Target> targets, std::chrono::microseconds now);
 
   void NoteSent(const Target& target, Utime target_time, int number, std::chrono::microseconds now);
 
-  /// Sent targets that are there no more, by id: each is told once.
+  /// Sent targets that are there no more, by id: each is returned once.
   std::vector<Sent> TakeEnded(std::span<const Target> targets);
 
-  /// A new receiver knows of none: all are due. Ended targets are still told.
+  /// All targets are due: a new receiver knows none. Ended targets are still told.
   void SendAnew();
-  /// The same, and ended targets are not told: the number of one that ended while nobody listened may be that of another by now.
+  /// All targets are due, and ended targets are not told: the number of a target that ended while nobody listened may belong to another target by
+  /// now.
   void Forget() { sent_.clear(); }
 
  private:

@@ -20,7 +20,7 @@ namespace {
 
 std::string TextOfError(int error) { return std::generic_category().message(error); }
 
-// Of requests, claims, and both of a broadcast of several packets: a busy network has a thousand other frames a second.
+// PDU formats of requests, claims, and the two of a broadcast of several packets: a busy network has a thousand other frames a second.
 constexpr std::array<std::uint32_t, 4> kTakenFormats{0xEA, 0xEE, 0xEC, 0xEB};
 
 can_frame ToCanFrame(const N2kFrame& frame) {

@@ -25,9 +25,9 @@ class Connection {
 
   State state() const { return state_; }
   bool is_open() const { return state_ == State::kOpen && !is_late_; }
-  /// It was or is being closed because it took too little.
+  /// The connection was or is being closed because its receiver accepted too little.
   bool is_late() const { return is_late_; }
-  /// Why it was closed.
+  /// Why the connection was closed.
   const std::string& reason() const { return reason_; }
 
   /// @param message  whole. A message that waits behind a full buffer closes the connection.
@@ -47,12 +47,12 @@ class Connection {
  protected:
   void Open() { state_ = State::kOpen; }
 
-  /// Sends it, or lets it wait in this process.
+  /// Sends the message, or lets it wait in this process.
   virtual void Write(std::string_view message) = 0;
-  /// That the receiver has not confirmed: in this process; there and in the kernel.
+  /// Bytes that the receiver has not confirmed: num_queued_bytes in this process, num_waiting_bytes in this process and in the kernel.
   virtual std::size_t num_queued_bytes() const = 0;
   virtual std::size_t num_waiting_bytes() = 0;
-  /// Whether the other side would learn now that it is closed.
+  /// Whether the other side would learn now that the connection is closed.
   virtual bool IsReachable() { return true; }
   /// Drops waiting bytes and closes at once.
   virtual void CloseNow() = 0;
@@ -62,7 +62,7 @@ class Connection {
   Traffic& traffic() { return *traffic_; }
 
  private:
-  // One that is too late and cannot be told is kept no longer than this.
+  // A late connection whose other side cannot be told of the end is kept no longer than this.
   static constexpr std::chrono::seconds kMaxUnreachable{15};
 
   std::shared_ptr<Traffic> traffic_;

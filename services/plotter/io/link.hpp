@@ -22,24 +22,24 @@ class Link {
   /// dropped once its buffer is full; a message without a receiver is counted.
   virtual void Send(std::string_view message) = 0;
 
-  /// Received messages, complete: lines without CR LF of a stream, datagrams, texts of a WebSocket; of a binary stream pieces, as they come. At most
-  /// a bounded number waits; the rest is counted.
+  /// The next received message, complete: a line of a stream without CR LF, a datagram, a text of a WebSocket; of a binary stream a piece, as it
+  /// came. At most a bounded number of messages waits; further messages are counted.
   virtual std::optional<std::string> Receive() { return std::nullopt; }
 
-  /// Bytes that may be sent now without falling behind: of a serial port by its speed; of a connection the free room of its buffer here, of several
-  /// clients that of the quickest; over UDP the bytes that a receiver's buffer takes at once.
+  /// Bytes that may be sent now without falling behind: on a serial port by its speed; on a connection the free room of its buffer in this process
+  /// (with several clients the quickest one's); over UDP the bytes that a receiver's buffer holds at once.
   virtual std::size_t room_bytes() const = 0;
 
-  /// After which a message that is sent now begins to leave: of a serial port the time that its unsent bytes take; 0 where nothing tells.
+  /// Time until a message that is sent now begins to leave: on a serial port the time for its unsent bytes; 0 where it is not known.
   virtual std::chrono::microseconds delay() const { return std::chrono::microseconds(0); }
 
-  /// Counts a message that was not made since nobody could be sent to.
+  /// Counts a message that was not made as it could be sent to nobody.
   virtual void NoteUnsent() {}
 
-  /// Whether anybody can be sent to.
+  /// Whether a message can be sent to anybody.
   virtual bool is_open() const = 0;
 
-  /// Goes up with each new receiver (connection, client, port opened again): it knows nothing of earlier messages.
+  /// Goes up with each new receiver (connection, client, port opened again): such a receiver knows nothing of earlier messages.
   virtual std::int64_t num_openings() const = 0;
 
   /// Why nothing can be sent now; empty = nothing is known to be wrong (a server without clients is no fault).

@@ -22,11 +22,11 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 
 /// A receiver that has not confirmed a message after this is cut off.
 inline constexpr std::chrono::seconds kMaxWait{2};
-/// Of all that waits for one receiver in this process.
+/// Most bytes that wait for one receiver in this process.
 inline constexpr std::size_t kMaxWaitingBytes = std::size_t{256} * 1024;
-/// That wait for Receive(), of one link.
+/// Most messages of one link that wait for Receive().
 inline constexpr std::size_t kMaxReceived = 64;
-/// Of that, what room_bytes() offers.
+/// The part of kMaxWaitingBytes that room_bytes() offers.
 inline constexpr std::size_t kOfferedBytes = kMaxWaitingBytes - std::size_t{64} * 1024;
 
 /// Counters and received messages of a link. Its connections share them, and may outlive the link.

@@ -73,10 +73,10 @@ class SerialPort final : public ReopeningPort {
 
  private:
   static constexpr double kBitsPerByte = 10;  // 8N1: a start bit, 8 data bits, a stop bit
-  // Room for half a second; at the lowest speeds for the longest line (of NMEA 2000; of NMEA 0183 it has 82 bytes).
+  // Room for half a second; at the lowest speeds for the longest line (a line of NMEA 2000; a sentence of NMEA 0183 has at most 82 bytes).
   static constexpr double kMaxLineBytes = 256;
 
-  // By its speed, and, where the port itself is slower, by what it holds.
+  // Unsent bytes by the port's speed, and, where the port is slower in fact, by the bytes that it holds.
   double unsent_bytes() const { return std::max(max_room_bytes_ - room_bytes_, static_cast<double>(serial_->num_waiting())); }
 
   std::shared_ptr<Connection> Open(std::string& fault) override {

@@ -22,14 +22,14 @@ class StreamConnection : public Connection, public std::enable_shared_from_this<
  public:
   StreamConnection(Stream stream, std::shared_ptr<Traffic> traffic) : Connection(std::move(traffic)), stream_(std::move(stream)) {}
 
-  /// The stream is open: reads from it, and may be sent to.
+  /// The stream is open: begins to read, and Send may be called.
   void Start() {
     Open();
     Read();
   }
 
  protected:
-  /// The other side sends no more. Closes unless it may still be sent to.
+  /// The other side sends no more. Closes the connection unless the other side may still receive.
   virtual void OnEnd() { Close("ended"); }
   virtual void PrepareClose() {}
   virtual void Take(std::string_view bytes) { cutter_.Cut(bytes, traffic()); }
@@ -60,7 +60,7 @@ class StreamConnection : public Connection, public std::enable_shared_from_this<
 
   // A handler may come after the connection was closed, so it owns the connection, and with it the bytes that the kernel reads from.
   void SendOn() {
-    if (is_late()) return;  // it is to be closed, and its unsent messages are old
+    if (is_late()) return;  // the connection is to be closed, and its unsent messages are old
     if (num_gone_ == sending_.size()) {
       sending_.clear();
       num_gone_ = 0;
@@ -89,7 +89,7 @@ class StreamConnection : public Connection, public std::enable_shared_from_this<
   std::array<char, 4096> bytes_{};
   std::string sending_;       // the kernel is being given
   std::size_t num_gone_ = 0;  // of sending_
-  std::string queue_;         // behind it
+  std::string queue_;         // waits behind sending_
 };
 
 }  // namespace lookout::plotter

@@ -16,7 +16,7 @@ namespace {
 
 using boost::asio::ip::tcp;
 
-// Of a computer that lost its power: it is asked after 10 s of silence, and given up when it does not answer three times.
+// Probes for a computer that lost its power: the first after 10 s of silence; the computer is given up when it does not answer three of them.
 constexpr int kSecondsToFirstProbe = 10;
 constexpr int kSecondsBetweenProbes = 5;
 constexpr int kNumProbes = 3;
@@ -90,7 +90,7 @@ bool TcpConnection::IsReachable() {
 
 void TcpConnection::Check() {
   if (!is_half_closed_) return;
-  const auto info = InfoOf(stream());  // nobody reads any more, so nobody else says when it is reset
+  const auto info = InfoOf(stream());  // nobody reads any more, so only this tells of a reset connection
   if (!info || info->tcpi_state != TCP_CLOSE_WAIT) Close("ended the connection");
 }
 

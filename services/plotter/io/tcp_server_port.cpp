@@ -83,7 +83,7 @@ class TcpServerPort final : public Port {
       acceptor_.accept(socket, error);
       if (error == boost::asio::error::would_block) return fault_.clear();
       if (error) {
-        fault_ = place_ + ": " + error.message();  // this process may have no descriptor left: it comes again
+        fault_ = place_ + ": " + error.message();  // this process may have no descriptor left: the client is accepted at a later try
         return;
       }
       if (clients_.size() >= max_clients_) {

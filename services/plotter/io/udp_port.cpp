@@ -43,7 +43,7 @@ class UdpPort final : public Port {
     boost::system::error_code error;
     socket_.send_to(boost::asio::buffer(message), destination_, 0, error);
     if (error) {
-      // The error may be that of an earlier message: then this one was not tried yet.
+      // The error may come from an earlier message: then this message was not tried yet.
       NoteError(error, now);
       ForgetErrors();
       socket_.send_to(boost::asio::buffer(message), destination_, 0, error);
@@ -84,8 +84,8 @@ class UdpPort final : public Port {
   static constexpr std::chrono::seconds kPause{1};
   // A network tells of one undelivered message and stays silent after the next.
   static constexpr std::chrono::seconds kFaultHold{5};
-  // A receiver's buffer holds 212 kB as Debian has it, which count some 1.3 kB for a datagram of half a kB: of a greater burst the end is lost, and
-  // with the same order each time always the same.
+  // A receiver's buffer holds 212 kB by Debian's default, in which a datagram of half a kB counts as some 1.3 kB. A greater burst loses its end, and
+  // with an unchanged order always the same messages.
   static constexpr std::size_t kMaxAtOnceBytes = 50'000;
   static constexpr std::size_t kBytesPerMs = 1'000;
 
@@ -98,7 +98,7 @@ class UdpPort final : public Port {
     socket_.non_blocking(true, error);
     socket_.set_option(boost::asio::socket_base::broadcast(true), error);
     if (destination_.address().is_multicast()) socket_.set_option(boost::asio::ip::multicast::hops(1), error);
-    const int yes = 1;  // without a connection the kernel tells of "port unreachable" only to who asks for it
+    const int yes = 1;  // without a connection the kernel reports "port unreachable" only to sockets that ask for it
     const bool is_v4 = destination_.address().is_v4();
     setsockopt(socket_.native_handle(), is_v4 ? IPPROTO_IP : IPPROTO_IPV6, is_v4 ? IP_RECVERR : IPV6_RECVERR, &yes, sizeof yes);
     if (!interface_.empty() &&
@@ -141,7 +141,7 @@ class UdpPort final : public Port {
         if (num_bytes > 0) traffic_->Add({bytes.data(), num_bytes});
         continue;
       }
-      // Of a message that was sent.
+      // The error comes from a message that was sent.
       NoteError(error, now);
       ForgetErrors();
     }

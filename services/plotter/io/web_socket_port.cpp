@@ -53,13 +53,13 @@ class WebSocketConnection final : public Connection, public std::enable_shared_f
   tcp::socket& socket() { return beast::get_lowest_layer(stream_).socket(); }
 
   void ShakeHands() {
-    // Of the whole opening Tick() keeps the time; this one is for a server that says that it ends, and does not.
+    // Tick() bounds the time of the whole opening; this timeout is for a server that says that it ends, and does not.
     stream_.set_option(websocket::stream_base::timeout{.handshake_timeout = kMaxOpening, .idle_timeout = kMaxSilence, .keep_alive_pings = true});
     stream_.set_option(websocket::stream_base::decorator([token = token_](websocket::request_type& request) {
       request.set(http::field::user_agent, "lookout");
       if (!token.empty()) request.set(http::field::authorization, "Bearer " + token);
     }));
-    stream_.read_message_max(0);  // a longer one is refused, and costs the connection nothing
+    stream_.read_message_max(0);  // 0: no bound here, as a longer message is refused later without closing the connection
     stream_.text(true);
     stream_.auto_fragment(false);
     stream_.async_handshake(answer_, host_, path_, [self = shared_from_this()](beast::error_code why) {
@@ -162,7 +162,7 @@ class WebSocketPort final : public ReopeningPort {
                       std::chrono::seconds(5)),
         options_(options),
         server_(ParseAddress(options.name, options.address), static_cast<std::uint16_t>(options.port)) {
-    // Either stands in the request: a blank or a line end would make another request of it.
+    // Path and token stand in the request: a blank or a line end in either would make another request of it.
     const auto is_plain = [](char character) { return character > ' ' && character <= '~'; };
     if (options.path.empty() || options.path.front() != '/' || !std::ranges::all_of(options.path, is_plain)) {
       throw std::runtime_error("output " + options.name + ": the path of a WebSocket begins with / and has printable characters without blanks");

@@ -26,7 +26,8 @@ constexpr std::chrono::milliseconds kWritePeriod(100);
 constexpr std::chrono::milliseconds kSyncPeriod(500);
 // Events are gathered in blocks of this size; one full block wakes the thread early.
 constexpr std::size_t kBlockBytes = 1024 * 1024;
-// Marks of a file, for each 0.1 s at first. Of more every second one goes: they stay as far apart as a share of the file.
+// Marks of a file, one for each 0.1 s at first. When there are more, every second mark is dropped, so that the distance of marks stays a share of the
+// file.
 constexpr std::size_t kMaxMarks = 4096;
 
 std::string Megabytes(std::int64_t size_bytes) { return std::to_string(size_bytes / 1'000'000) + " MB"; }
@@ -145,7 +146,7 @@ void DiskWriter::Run() {
 void DiskWriter::WriteBlock(const Block& block) {
   const bool begins = !block.stem.empty();
   if (begins) {
-    SyncFile();  // and looked at, before the new one takes a name that may be its
+    SyncFile();  // and checks the file before the new file takes a name that may be the old one's
     std::error_code ignored;
     std::filesystem::create_directories(folder_, ignored);  // open() tells the fault; room is looked for on the right disk
   }
@@ -187,9 +188,9 @@ void DiskWriter::WriteBlock(const Block& block) {
 }
 
 void DiskWriter::AddMark(std::int64_t num_events) {
-  if (marks_.size() >= kMaxMarks) {  // one more where somebody cut off bytes that another program had written
+  if (marks_.size() >= kMaxMarks) {  // one mark more than kMaxMarks where somebody cut off bytes that another program had written
     std::size_t num_kept = 0;
-    for (auto i = (marks_.size() + 1) % 2; i < marks_.size(); i += 2) marks_[num_kept++] = marks_[i];  // the last one stays
+    for (auto i = (marks_.size() + 1) % 2; i < marks_.size(); i += 2) marks_[num_kept++] = marks_[i];  // the last mark stays
     marks_.resize(num_kept);
   }
   marks_.push_back({file_bytes_, (marks_.empty() ? 0 : marks_.back().num_events) + num_events});
@@ -216,12 +217,12 @@ bool DiskWriter::HasRoomFor(const Block& block) {
   return false;
 }
 
-// The file before is closed when the new one is there. @return false: there is none, and the one before is written on
+// Opens a new file, and then closes the file before. @return false: no file could be made, and the file before is written on
 bool DiskWriter::OpenFile(const std::string& stem) {
   auto file = folder_ / (stem + ".lcmlog");
   int made = -1;
-  // Appended to, so that a file that somebody cuts goes on at its end, without a hole. Of two recorders that start in the same second each gets its
-  // own. Digits, since they sort behind the dot of a name without them, in any locale.
+  // The file is opened for appending, so that a file that somebody cuts goes on at its end, without a hole. Two recorders that start in the same
+  // second get different files. Names differ by digits, as digits sort behind the dot of a name without them, in any locale.
   for (int i = 1; (made = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644)) < 0 && errno == EEXIST; ++i) {
     auto number = std::to_string(i);
     number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
@@ -334,7 +335,7 @@ void DiskWriter::CheckFile(const Block* last_block) {
       return Disturb("was cut from " + std::to_string(old_bytes) + " to " + std::to_string(kept_bytes) + " bytes while it was recorded: " + lost);
     num_unsynced_ = 0;
     unsynced_bytes_ = 0;
-    file_bytes_ = old_bytes;  // the name may be that of another file by now: nothing is removed
+    file_bytes_ = old_bytes;  // another file may have this name by now: nothing is removed
     const std::lock_guard lock(mutex_);
     ++status_.num_disturbed;
     Fail((is_name_there ? "was replaced by another file while it was recorded: " : "was deleted while it was recorded: ") + lost);

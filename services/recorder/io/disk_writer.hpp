@@ -26,30 +26,30 @@ struct Disk {
   std::function<std::int64_t(const std::filesystem::path& folder)> free_bytes;       // -1 = not known
 };
 
-/// The kernel's.
+/// The system calls of the kernel.
 Disk RealDisk();
 
 struct DiskLimits {
-  std::int64_t queue_bytes = 0;    // events may wait for the disk up to this; further ones are lost
-  std::int64_t reserve_bytes = 0;  // of the disk, is not written into
+  std::int64_t queue_bytes = 0;    // bytes of events that may wait for the disk; further events are lost
+  std::int64_t reserve_bytes = 0;  // of the disk, which is left free
 };
 
 /// Counts of events, since the start.
 struct DiskStatus {
-  std::filesystem::path file = {};  // that is written, or was last
+  std::filesystem::path file = {};  // the file that is written, or was written last
   bool is_recording = false;
-  bool is_waiting_for_file = false;       // one was asked for and is not yet begun
+  bool is_waiting_for_file = false;       // a file was asked for and is not yet begun
   bool is_full = false;                   // not recording, for lack of room
-  bool wants_new_file = false;            // recording, into a file that somebody moved, cut or wrote to, or that should have ended
-  std::chrono::milliseconds standing{0};  // for how long the disk has not finished what it was given last; 0 while nothing waits
-  std::string fault = {};                 // why something was lost last, or why it does not record
+  bool wants_new_file = false;            // recording goes on in a file that somebody moved, cut or wrote to, or that should have ended
+  std::chrono::milliseconds standing{0};  // for how long the disk has not finished its last block; 0 while nothing waits
+  std::string fault = {};                 // why events were lost last, or why the writer does not record
   std::int64_t num_events = 0;            // handed to the kernel
-  std::int64_t num_bytes = 0;             // of them, as in the files
+  std::int64_t num_bytes = 0;             // of these events, as in the files
   std::int64_t num_files = 0;
   std::int64_t num_faults = 0;           // of the disk
   std::int64_t num_disturbed = 0;        // files that somebody deleted, moved, cut or wrote to while they were recorded
-  std::int64_t num_lost_fault = 0;       // events, to a disk that did not take them, or with a file that was deleted or cut
-  std::int64_t num_lost_full = 0;        // events, while there was no room
+  std::int64_t num_lost_fault = 0;       // events that the disk did not accept, or that were in a file that was deleted or cut
+  std::int64_t num_lost_full = 0;        // events while there was no room
   std::int64_t num_lost_queue_full = 0;  // events, while the disk stood still
   std::int64_t num_lost_bytes = 0;       // of all lost events
   std::int64_t queue_bytes = 0;
@@ -60,9 +60,9 @@ struct DiskStatus {
 };
 
 /// Files are written in blocks of complete events. A block that the disk does not take whole is cut off again, so that a log ends with a complete
-/// event, and its file is closed; events until the next BeginFile are lost. The file is locked (flock). After each block and each sync it is looked
-/// at: a deleted or cut file has lost its events; a file that has lost its name, or to which another program writes, is written on until the next
-/// BeginFile. Each event is on the disk (fdatasync) at most 0.7 s after Append, unless the disk itself needs longer.
+/// event, and its file is closed; events until the next BeginFile are lost. The file is locked (flock). After each block and each sync the file is
+/// checked: a deleted or cut file has lost its events; a file that has lost its name, or to which another program writes, is written on until the
+/// next BeginFile. Each event is on the disk (fdatasync) at most 0.7 s after Append, unless the disk itself needs longer.
 class DiskWriter {
  public:
   /// Starts the thread.
@@ -114,17 +114,17 @@ class DiskWriter {
   const DiskLimits limits_;
   const Disk disk_;
 
-  mutable std::mutex mutex_;  // guards these members
+  mutable std::mutex mutex_;  // guards the members from wake_ to num_flushes_done_
   std::condition_variable wake_;
   std::condition_variable done_;
   std::deque<Block> queue_;
   DiskStatus status_;
   bool is_stopping_ = false;
-  std::optional<std::chrono::steady_clock::time_point> given_;  // when the disk was given what it has not finished
+  std::optional<std::chrono::steady_clock::time_point> given_;  // when the disk was given its unfinished block
   std::int64_t num_flushes_wanted_ = 0;
   std::int64_t num_flushes_done_ = 0;
 
-  // Of the thread alone.
+  // Members that the thread alone uses.
   int descriptor_ = -1;
   // The end of a block in the file, and the events up to there.
   struct Mark {
@@ -135,12 +135,12 @@ class DiskWriter {
   std::int64_t file_bytes_ = 0;
   std::vector<Mark> marks_;  // of the file
   bool is_disturbed_ = false;
-  bool can_tell_name_ = false;     // the file system tells whether a name is that of the open file
+  bool can_tell_name_ = false;     // the file system can tell whether a name leads to the open file
   std::int64_t num_unsynced_ = 0;  // events that the kernel has and the disk may not
   std::int64_t unsynced_bytes_ = 0;
   std::chrono::steady_clock::time_point last_sync_;
 
-  std::thread thread_;  // last: it begins when all else is there
+  std::thread thread_;  // last, so that the thread begins when all other members are there
 };
 
 }  // namespace lookout::recorder

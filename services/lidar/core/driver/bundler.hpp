@@ -16,10 +16,10 @@ namespace lookout::lidar {
 
 /// Raw payloads as they came.
 struct PacketBundle {
-  Utime time;  // host time of the first payload; of a mark alone, at which it was set
+  Utime time;  // host time of the first payload; of a bundle that is a mark alone, host time when the mark was set
   std::int64_t seq = 0;
   bool is_start = false;  // state before this bundle is void
-  bool is_end = false;    // nothing follows it
+  bool is_end = false;    // the input ends: no bundle follows
 
   struct Item {
     Utime host_time;
@@ -43,11 +43,12 @@ class Bundler {
   /// With them a message is smaller than what the bus carries.
   static constexpr std::size_t kMaxPayloadBytes = 110'000;
 
-  /// What packets look like from outside.
+  /// How the bundler tells packets of the lidar's model without parsing them.
   struct Form {
     std::function<bool(std::size_t)> is_data_size;
     std::function<bool(std::size_t)> is_position_size;
-    std::function<bool(Bytes)> ends_scan;  // told each data packet once; a bundle ends with it. Empty: bundles are short enough without
+    std::function<bool(Bytes)>
+        ends_scan;  // called once with each data packet; true ends the bundle with this packet. Empty: bundles are short enough without
     std::chrono::milliseconds max_wait = kMaxWait;
   };
 

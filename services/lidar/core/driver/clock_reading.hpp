@@ -19,11 +19,11 @@ enum class TimeSource { kHost, kSensor };
 /// since 1970 is kLocked while its clock is within 0.25 s of the host's, else kFreeRunning.
 enum class ClockState {
   kUnknown,            // no position packet, or none for 3 s (of the sensor's clock, which no stall and no step of the host's stretches)
-  kNoPps,              // no PPS, and there was no lock since the sensor started: its hour began when it liked
-  kAcquiring,          // PPS is there, the clock is being set to it
+  kNoPps,              // no PPS, and no lock since the sensor started: the sensor's hour began at an arbitrary time
+  kAcquiring,          // PPS is there, the sensor's clock is being set to it
   kLockedWithoutTime,  // PPS is locked, but no valid RMC for 3 s says which second it is
-  kLocked,             // PPS is locked, and the stamps are those of the RMC
-  kFreeRunning,        // it was locked and the PPS is gone; or it says "locked", but its stamps are not those of its RMC
+  kLocked,             // PPS is locked, and the stamps agree with the RMC
+  kFreeRunning,        // the clock was locked and the PPS is gone; or the sensor says "locked", but its stamps do not agree with its RMC
   kError,              // the sensor says that its PPS is wrong
 };
 
@@ -35,7 +35,7 @@ struct ClockReading {
   std::optional<int> pps;                                      // of the last position packet
   std::optional<std::chrono::microseconds> rmc_age;            // since a valid RMC told a new time, by the sensor's oscillator
   std::optional<std::chrono::microseconds> host_minus_sensor;  // UTC by the host's clock minus UTC by the sensor's
-  std::optional<double> drift_ppm;                             // of the sensor's clock against the host's, positive when it is fast
+  std::optional<double> drift_ppm;                             // of the sensor's clock against the host's, positive when the sensor's is fast
 
   Utime ToUtime(SensorTime time) const { return Utime(time + offset); }
 };

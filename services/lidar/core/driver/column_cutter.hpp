@@ -20,8 +20,8 @@ class ColumnCutter {
 
   /// Cost: proportional to the returns.
   ///
-  /// @param placed  has columns; its time is greater than that of the packet before
-  /// @param clock   for the scan that begins in it
+  /// @param placed  has columns; is later than the packet before
+  /// @param clock   for a scan that begins in this packet
   void Add(const PlacedColumns& placed, const ClockReading& clock, const PacketCounts& counts);
 
   /// Later packets do not continue the earlier ones: ends the scan, if there is one.
@@ -51,11 +51,11 @@ class ColumnCutter {
   std::int64_t num_too_far_ = 0;
 
   std::optional<ClockReading> clock_;
-  Scan scan_;  // its ranges are made when it ends
+  Scan scan_;  // its ranges are filled in when the scan ends
   std::vector<std::uint32_t> range_;
   bool is_after_cut_ = false;          // the next scan begins at the cut
   int num_lost_before_scan_ = 0;       // packets lost that had columns in the scan that is to begin
-  double reach_rad_ = 0.0;             // azimuth reached: noise of the encoder may go back behind it
+  double reach_rad_ = 0.0;             // greatest azimuth so far: by noise of the encoder a column may lie a little before it
   double swept_rad_ = 0.0;             // since the first column
   double advance_rad_ = 0.0;           // from one column to the next, as last seen
   std::chrono::nanoseconds start_{0};  // sensor time of scan_.time

@@ -22,7 +22,8 @@ namespace lookout::lidar {
 struct ColumnDecoderParams {
   std::function<std::unique_ptr<PacketReader>()> make_reader;
   bool has_position_packets = false;  // as a VLP-16
-  /// Of models whose second port says something else: the sentence of a payload, empty where it is none. Without a function they are not used.
+  /// For models whose second port carries other payloads: returns the sentence in a payload, empty where there is none. Without a function payloads
+  /// of the second port are not used.
   std::function<std::string(Bytes payload)> sentence_of = {};
   TimeChoice time = TimeChoice::kAuto;
   double cut_azimuth_rad = 0.0;
@@ -87,9 +88,9 @@ class ColumnDecoder final : public Decoder {
   SentenceHandler on_sentence_;
   Totals totals_;
   SequenceCounts past_counts_;                      // of the runs before the last start mark
-  std::vector<std::unique_ptr<const Head>> heads_;  // all that were seen: as many as the sensor has modes. Scans point to them
+  std::vector<std::unique_ptr<const Head>> heads_;  // every head that was seen, one for each mode of the sensor. Scans point to these
   std::unique_ptr<State> state_;
-  Packet packet_;  // keeps its memory
+  Packet packet_;  // a member, so that its vectors keep their memory
   std::string last_refusal_;
   std::optional<ClockReading> last_clock_;
   double last_rate_radps_ = 0.0;

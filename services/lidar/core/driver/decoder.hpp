@@ -18,7 +18,7 @@ namespace lookout::lidar {
 /// The NMEA 0183 sentence of one position packet.
 struct SentenceOfLidar {
   Utime time;       // when the packet was made, by the clock that stamps the scans
-  Utime host_time;  // when it came
+  Utime host_time;  // arrival of the packet
   std::uint32_t stamp_us = 0;
   int pps = 0;
   std::string text;
@@ -29,7 +29,7 @@ struct Telemetry {
   int top_board_celsius = 0;
   int bottom_board_celsius = 0;
   bool is_shut_down = false;  // the lasers are off for their temperature
-  int shutdown_celsius = 0;   // temperature at the last such shutdown
+  int shutdown_celsius = 0;   // temperature at the last shutdown for temperature
   int power_up_celsius = 0;
 
   friend bool operator==(const Telemetry&, const Telemetry&) = default;
@@ -66,7 +66,7 @@ class Decoder {
   /// Packets since the start of the process that do not follow one another: restarts, overlaps, azimuths elsewhere.
   virtual std::int64_t num_out_of_stream() const = 0;
 
-  /// Of the last scan.
+  /// Clock reading and rate of rotation of the last scan.
   virtual const std::optional<ClockReading>& last_clock() const = 0;
   virtual double last_rate_radps() const = 0;
 

@@ -99,7 +99,7 @@ void PacketOrder::SkipEmpty() {
   }
 }
 
-// Of the packets that seem to miss before this one: those that came, without a good column. They are forgotten.
+// Counts, and forgets, packets before this one that seem to be missing but came without a good column.
 int PacketOrder::NumEmptyBefore(const PacketNumber& number) {
   if (!last_ || !last_->mark.number) return 0;
   const auto until = WayTo(*last_->mark.number, number);
@@ -244,7 +244,7 @@ void PacketOrder::ReleaseFirst() {
   held_.erase(held_.begin());
   const auto place = PlaceOf(first.host_time, MarkOf(first.packet, *first.head));
   if (place.kind == Kind::kLate || place.kind == Kind::kOverlapping || place.kind == Kind::kDuplicate) {
-    ++counts_.num_overlapping;  // with one that was held beside it
+    ++counts_.num_overlapping;  // the packet overlaps a held packet
   } else {
     Give(first.host_time, first.packet, *first.head, place.kind == Kind::kRestart ? Place{Kind::kRestart, first.packet.stamp, 0} : place);
   }
@@ -285,8 +285,7 @@ void PacketOrder::Give(Utime host_time, const Packet& packet, const Head& head, 
   SkipEmpty();
 }
 
-// Of the packets that seem to miss before this one, those that were not sent for a limited field of view are no loss: what is missing where the head
-// has fired before is one.
+// Packets that the sensor did not send, because its field of view is limited, are no loss. A missing packet is lost where the head has fired before.
 int PacketOrder::LostOfGap(const Mark& mark, int num_missing) {
   if (num_missing == 0) return 0;
   const bool may_be_dark = !mark.number && mark.has_columns && last_->mark.has_columns && rate_radps_ > 0.0;

@@ -23,10 +23,10 @@ namespace lookout::lidar {
 struct PlacedColumns {
   const Packet* packet = nullptr;
   const Head* head = nullptr;
-  Utime host_time;                   // of its arrival
-  std::chrono::nanoseconds time{0};  // SensorTime of its stamp
-  int num_lost = 0;                  // packets missing before it
-  bool is_restart = true;            // nothing before it belongs to it
+  Utime host_time;                   // arrival of the packet
+  std::chrono::nanoseconds time{0};  // SensorTime of the packet's stamp
+  int num_lost = 0;                  // packets that are missing before this packet
+  bool is_restart = true;            // the packet does not continue earlier packets
 };
 
 /// A packet is next when its number follows the last, or, of a sensor without numbers, when its stamp follows the last by that packet's duration.
@@ -58,7 +58,7 @@ class PacketOrder {
     std::chrono::nanoseconds time{0};
     int num_lost = 0;
   };
-  // Of a packet, without its returns.
+  // A packet without its returns.
   struct Mark {
     std::chrono::nanoseconds stamp{0};
     std::chrono::nanoseconds duration{0};

@@ -14,7 +14,7 @@ namespace lookout::lidar {
 
 /// Data packets since the start.
 struct PacketCounts {
-  std::int64_t num_packets = 0;  // whole ones of a known model, also those dropped as duplicates or late
+  std::int64_t num_packets = 0;  // whole packets of a known model, also packets dropped as duplicates or late
   std::int64_t num_lost = 0;
   std::int64_t num_duplicates = 0;
   std::int64_t num_reordered = 0;
@@ -28,11 +28,11 @@ struct Scan {
   bool is_partial_start = false;  // does not begin at the cut
   bool is_partial_end = false;    // does not end at the cut
   bool has_hole = false;          // packets were lost inside
-  int num_lost_packets = 0;       // those that had columns in this scan
+  int num_lost_packets = 0;       // lost packets that had columns in this scan
   double rate_radps = 0.0;        // mean rate of rotation of the head
   double range_unit_m = 0.0;      // metres per count of `range`: the head's, or a multiple where the farthest return needs it
   ClockReading clock;             // at the first column
-  PacketCounts counts;            // at the packet that ended it
+  PacketCounts counts;            // at the packet that ended the scan
 
   std::vector<float> azimuth_rad;          // [columns] of a beam without offset, in [0, 2 pi)
   std::vector<std::int32_t> time_ns;       // [columns] since `time`

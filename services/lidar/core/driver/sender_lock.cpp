@@ -16,7 +16,8 @@ bool SenderLock::IsAllowed(const Sender& sender) const { return allowed_.empty()
 
 void SenderLock::Reset() { streams_ = {}; }
 
-// The one on trial, this sender's; nullptr while another is, and for one whose packet cannot be the lidar's: it would keep the place from the lidar.
+// The candidate on trial, if it is this sender. nullptr while another sender is on trial, and for a sender whose packet cannot be the lidar's: it
+// would keep the lidar from its trial.
 SenderLock::Candidate* SenderLock::CandidateFor(StreamState& state, Utime time, const Sender& sender, Verdict alone) const {
   auto& candidate = state.candidate;
   const bool is_over = !candidate || time < candidate->last || time - candidate->last > kTrialPause;
@@ -25,8 +26,8 @@ SenderLock::Candidate* SenderLock::CandidateFor(StreamState& state, Utime time, 
     return &*candidate;
   }
   if (alone != Verdict::kValid && alone != Verdict::kUndecided) return nullptr;
-  // Without a holder the first valid sender counts, not the first sender. Of two senders that are known by their intervals alone one is tried after
-  // the other: alternating, neither would show an interval.
+  // Without a holder the first valid sender counts, not the first sender. Two senders that are known by their intervals alone are tried one after the
+  // other: if they alternated, neither would show an interval.
   if (!is_over && (state.holder || alone == Verdict::kUndecided)) return nullptr;
   candidate = Candidate{sender, make_judge_(), time, std::chrono::microseconds(0)};
   return &*candidate;

@@ -27,18 +27,18 @@ struct Sender {
 std::string ToText(const Sender& sender);
 
 /// The rule uses stamps of arrival and no clock, so live and replay of a capture accept the same packets:
-/// - The first sender of a valid packet of the lidar that was asked for holds the stream. Before it every packet is taken.
+/// - The first sender of a valid packet of the lidar that was asked for holds the stream. Before there is a holder every packet is accepted.
 /// - Data packets decide the address; position packets are taken from it alone. Each stream has a source port of its own. While nobody sends valid
 ///   data, the first sender of valid position packets holds that stream by itself.
 /// - The holder is replaced when it was silent for kSilence, or by its own address with another port (a simulator or forwarder that started again)
-///   for kPortSilence: invalid packets are silence. The next one must have been heard for kTrial without a packet of the holder in between: a
+///   for kPortSilence: invalid packets are silence. The next holder must have been heard for kTrial without a packet of the holder in between: a
 ///   clock that was set, or a process that stood still, is not silence.
 class SenderLock {
  public:
   static constexpr std::chrono::seconds kSilence{10};
   static constexpr std::chrono::seconds kPortSilence{1};
   static constexpr std::chrono::milliseconds kTrial{250};
-  /// A packet on trial counts for so much at most, and a sender that is silent for longer than kTrialPause begins its trial anew.
+  /// A packet of a sender on trial counts for this much time at most, and a sender that is silent for longer than kTrialPause begins its trial anew.
   static constexpr std::chrono::milliseconds kTrialStep{50};
   static constexpr std::chrono::seconds kTrialPause{1};
 
@@ -57,7 +57,7 @@ class SenderLock {
   /// nullopt while there is none.
   const std::optional<Sender>& holder(Stream stream) const { return streams_[static_cast<std::size_t>(stream)].holder; }
 
-  /// The holder, at its last valid packet.
+  /// When the holder's last valid packet came.
   Utime heard(Stream stream) const { return streams_[static_cast<std::size_t>(stream)].heard; }
 
   bool IsAllowed(const Sender& sender) const;
@@ -75,7 +75,7 @@ class SenderLock {
   struct StreamState {
     std::optional<Sender> holder;
     std::unique_ptr<PacketJudge> judge;  // of the holder's packets
-    Utime heard{};                       // the holder, at its last valid packet
+    Utime heard{};                       // when the holder's last valid packet came
     std::optional<Candidate> candidate;
   };
 

@@ -6,16 +6,16 @@
 namespace lookout::lidar {
 
 enum class PacketVerdict {
-  kTaken,  // passed on, or held until it is known whether the one before it comes
+  kTaken,  // passed on, or held until it is known whether the packet before comes
   kDuplicate,
-  kLate,         // its place has been passed
-  kOverlapping,  // less than half a period after the last and elsewhere in azimuth, which one sensor does not send
+  kLate,         // packets behind it were passed on already
+  kOverlapping,  // less than half a period after the last packet and elsewhere in azimuth: one sensor alone does not send so
 };
 
 struct SequenceCounts {
   std::int64_t num_lost = 0;
   std::int64_t num_duplicates = 0;
-  std::int64_t num_reordered = 0;  // came after a later one; put right, or late
+  std::int64_t num_reordered = 0;  // came after a later packet: put into order, or dropped as late
   std::int64_t num_late = 0;
   std::int64_t num_overlapping = 0;
   std::int64_t num_restarts = 0;       // after the first packet

@@ -16,12 +16,12 @@ namespace {
 using std::chrono::nanoseconds;
 
 constexpr int kCdegPerHesaiTurn = 36000;
-constexpr std::size_t kNoByte = 0;  // no such byte in this layout
+constexpr std::size_t kNoByte = 0;  // the layout does not have this byte
 
-/// Where a packet of a model has what. Offsets of the head are from the packet's begin, those of the tail from the tail's.
+/// Layout of a model's packets. Offsets of the head count from the begin of the packet, offsets of the tail from the begin of the tail.
 struct HesaiLayout {
   std::string_view name;
-  std::array<std::uint16_t, 2> sizes;  // bytes of a packet, without and with what is optional
+  std::array<std::uint16_t, 2> sizes;  // bytes of a packet, without and with its optional part
   std::size_t num_channels;
   std::size_t num_blocks;
   std::size_t head_bytes;
@@ -33,8 +33,8 @@ struct HesaiLayout {
   std::size_t us_at;
   std::size_t mode_at;
   std::size_t date_at;
-  std::size_t sequence_at;  // beyond the end of a packet without it
-  std::size_t crc_at;       // of the body, from the packet's begin; kNoByte: it has none
+  std::size_t sequence_at;  // beyond the end of a packet that has no number
+  std::size_t crc_at;       // checksum of the body, from the packet's begin; kNoByte: there is none
   int unit_mm;              // of the manual
   bool is_counted_back;     // first_ns is of the last column of a packet, else of the first
   std::int64_t first_ns;    // from the packet's stamp to the first shot of that column
@@ -124,7 +124,7 @@ std::optional<HesaiReturnMode> HesaiReturnModeOf(std::uint8_t byte) {
   }
 }
 
-// A cell as one number whose order is that of the ranges. A cell without a return is the farthest.
+// A cell as one number that sorts by range. A cell without a return sorts as the farthest.
 constexpr std::uint32_t NearKey(const std::uint8_t* cell) {
   const std::uint32_t range = cell[0] | std::uint32_t{cell[1]} << 8;
   return ((range - 1) & 0xFFFF) << 8 | cell[2];
@@ -315,7 +315,7 @@ PacketFault HesaiReader::Read(Bytes payload, Packet& packet) {
   }
   const auto date = DateOf(tail.subspan(layout.date_at, 6), layout.head_bytes == 12);
   const std::uint32_t us = ReadU32LittleEndian(tail, layout.us_at);
-  constexpr std::uint32_t kMaxUs = 2'000'000;  // a leap second may be added to the last one
+  constexpr std::uint32_t kMaxUs = 2'000'000;  // a leap second may follow the last second
   if (!date || us >= kMaxUs) return Refuse(PacketFault::kStamp, "a date or time of day that is none");
   if (layout.crc_at != kNoByte) {
     const Bytes body = payload.subspan(layout.head_bytes, layout.crc_at - layout.head_bytes);

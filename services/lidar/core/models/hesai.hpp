@@ -38,10 +38,10 @@ struct HesaiAngle {
 /// @throws std::runtime_error  "line 7: ..." with what is wrong
 std::vector<HesaiAngle> ParseHesaiAngles(std::string_view csv);
 
-/// Angles as the model is made; those of a unit differ by some 0.1 deg (0.17 m at 100 m).
+/// Nominal angles of the model; the angles of a single unit differ by some 0.1 deg (0.17 m at 100 m).
 std::vector<HesaiAngle> NominalHesaiAngles(HesaiModel model);
 
-/// Each block of a packet (dual return: each pair of blocks of one azimuth) is a column. Of a QT128 a block holds 96 of the 128 channels: channels 1
+/// Each block of a packet (dual return: each pair of blocks of one azimuth) is a column. A block of a QT128 holds 96 of the 128 channels: channels 1
 /// to 32 and 33 to 64 fire in turn and have no return in every other column.
 ///
 /// Returns of a pair are told by their ranges, since models place them differently under the same mode. In modes of first, last and strongest the

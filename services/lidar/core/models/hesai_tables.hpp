@@ -8,8 +8,8 @@
 
 namespace lookout::lidar::hesai {
 
-// Angles of a unit of each model, from the files in HesaiLidar_SDK_2.0; those of Pandar40P and Pandar64 are turned up or down as a whole, so that
-// channel 12 or 18 is level. Units differ from each other by some 0.1 deg. XT heads have even steps: see hesai.cpp.
+// Angles of a unit of each model, from the files in HesaiLidar_SDK_2.0; the angles of Pandar40P and Pandar64 are shifted up or down as a whole, so
+// that channel 12 or 18 is level. Units differ from each other by some 0.1 deg. XT heads have even steps: see hesai.cpp.
 inline constexpr std::array<HesaiAngle, 40> kPandar40pAngles{
     {{14.882, -1.042},  {11.032, -1.042},  {8.059, -1.042},  {5.057, -1.042},   {3.04, -1.042},   {2.028, -1.042},  {1.688, 3.125},
      {1.351, -5.208},   {1.013, -1.042},   {0.675, 3.125},   {0.337, -5.208},   {0, -1.042},      {-0.337, 3.125},  {-0.675, -5.208},

@@ -17,7 +17,7 @@ double Rounded(double value, double per_unit) { return std::round(value * per_un
 }  // namespace
 
 std::string ImuSentence(const OusterImu& sample, const Eigen::Matrix3d& R_vessel_imu) {
-  constexpr double kGravityMps2 = 9.80665;  // standard: the maker counts in it
+  constexpr double kGravityMps2 = 9.80665;  // standard gravity: the maker states accelerations in multiples of it
   Eigen::Vector3d force_mps2;
   Eigen::Vector3d rate_radps;
   for (int axis = 0; axis < 3; ++axis) {

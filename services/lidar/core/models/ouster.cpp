@@ -131,7 +131,7 @@ constexpr OusterCrcTables MakeOusterCrcTables() {
 
 constexpr OusterCrcTables kOusterCrcTables = MakeOusterCrcTables();
 
-// What eight bytes do that kBehind more follow.
+// Share of eight bytes in the checksum when kBehind more bytes follow.
 template <std::size_t kBehind>
 std::uint64_t OusterCrcOfWord(std::uint64_t word) {
   const auto& tables = kOusterCrcTables;
@@ -340,8 +340,8 @@ std::uint32_t OusterReader::FrameOf(Bytes payload) const {
   return ReadU16LittleEndian(payload, column + kOusterLegacyFrameOffset);
 }
 
-// A sensor of half as many columns sends packets of the same size, and all its azimuths would be half of what they are. Its turns end early: the
-// frame id goes on by one and no time passes for the columns that are missing.
+// A sensor with half as many columns as the metadata say sends packets of the same size, and all its azimuths would be read as half their value. Its
+// turns end early: the frame id goes on by one and no time passes for the columns that are missing.
 bool OusterReader::HasShortTurns(std::uint32_t frame) {
   if (good_columns_.size() < 2) return short_turn_columns_ != 0;
   const std::int64_t num_columns = metadata_.columns_per_frame;

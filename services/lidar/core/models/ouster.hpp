@@ -18,7 +18,7 @@ namespace lookout::lidar {
 /// Data packets in the profile of the metadata. The frame is the maker's lidar frame, whose x axis points to the connector; OusterMetadata has the
 /// transform to the housing.
 ///
-/// Beam::origin_height_m is exact. What beams that start off the axis shift in the level plane is left out: n (cos(azimuth offset) - cos(elevation))
+/// Beam::origin_height_m is exact. The level shift of beams that start off the axis is left out: n (cos(azimuth offset) - cos(elevation))
 /// along the beam and n sin(azimuth offset) across it, together to 8.4 mm on OS0 and 1.6 mm on OS1.
 class OusterReader final : public PacketReader {
  public:
@@ -68,7 +68,7 @@ class OusterReader final : public PacketReader {
   OusterMetadata metadata_;
   Head head_;
   std::string reason_;
-  std::vector<std::size_t> sizes_bytes_;  // of packets of this sensor, in any mode; the first is that of the metadata
+  std::vector<std::size_t> sizes_bytes_;  // of packets of this sensor, in any mode; first the size that the metadata give
 
   // Layout of a packet in the profile of the metadata.
   std::size_t head_bytes_ = 0;
@@ -82,12 +82,12 @@ class OusterReader final : public PacketReader {
   int packets_per_frame_ = 0;
 
   std::vector<GoodColumn> good_columns_;  // of the packet at hand
-  int first_id_ = 0;                      // of its columns, good or not; columns_per_frame where it is not known
+  int first_id_ = 0;                      // id of the packet's first column, good or not; columns_per_frame where the id is not known
   std::uint64_t first_stamp_ns_ = 0;
 
   std::optional<Turning> last_turning_;
   int num_short_turns_ = 0;     // in a row
-  int short_turn_columns_ = 0;  // with which turns end that are shorter than the metadata say; 0: they are not
+  int short_turn_columns_ = 0;  // columns of a turn, where turns are shorter than the metadata say; 0: turns are whole
 
   bool has_checksum_ = false;
   int num_wrong_checksums_ = 0;
@@ -95,7 +95,7 @@ class OusterReader final : public PacketReader {
   bool has_other_window_ = false;
 };
 
-/// What a data packet may be, where no metadata say it.
+/// A layout that a data packet may have, where no metadata tell.
 struct OusterLayout {
   OusterProfile profile = OusterProfile::kLegacy;
   int pixels_per_column = 0;
@@ -111,7 +111,8 @@ std::vector<OusterLayout> OusterLayoutsOf(Bytes payload);
 /// Stamp of the first column. Precondition: `layout` is one of OusterLayoutsOf(payload).
 std::chrono::nanoseconds OusterStampOf(Bytes payload, const OusterLayout& layout);
 
-/// A sample of the sensor's IMU: LEGACY, 48 bytes at 100 Hz. Axes are those of the IMU, OusterMetadata::T_sensor_imu turns them.
+/// A sample of the sensor's IMU: LEGACY, 48 bytes at 100 Hz. Along the axes of the IMU; OusterMetadata::T_sensor_imu turns them to those of the
+/// sensor.
 struct OusterImu {
   std::chrono::nanoseconds stamp{0};  // when the packet was made, by the clock of the columns
   std::chrono::nanoseconds acceleration_stamp{0};

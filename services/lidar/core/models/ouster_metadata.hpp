@@ -1,4 +1,4 @@
-// What an Ouster sensor says of itself: the layout of its packets and the directions of its beams. Nothing in a packet holds them.
+// The metadata of an Ouster sensor: the layout of its packets and the directions of its beams. The packets do not hold these.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,7 +10,7 @@
 
 namespace lookout::lidar {
 
-/// What a pixel holds; the maker's udp_profile_lidar.
+/// The content of a pixel; the maker's udp_profile_lidar.
 enum class OusterProfile {
   kLegacy,
   kSingle,        // RNG19_RFL8_SIG16_NIR16
@@ -22,7 +22,7 @@ enum class OusterProfile {
 /// @return the maker's name of it
 std::string_view NameOf(OusterProfile profile);
 
-/// What the stamps of columns count from.
+/// The start from which the stamps of columns count.
 enum class OusterClock {
   kUnknown,             // not said
   kInternalOscillator,  // since power-on
@@ -34,7 +34,7 @@ enum class OusterClock {
 enum class OusterReturnOrder { kStrongestToWeakest, kNearestToFarthest, kFarthestToNearest };
 
 struct OusterMetadata {
-  std::string product;                         // "OS-1-128"; empty where it is not said, as all texts here
+  std::string product;                         // "OS-1-128"; empty where the metadata do not say it, as all texts here
   std::optional<std::uint64_t> serial_number;  // as packets carry it
   std::string firmware;                        // "v2.3.0"
   std::optional<std::uint32_t> init_id;        // anew at each initialisation of the sensor
@@ -44,7 +44,7 @@ struct OusterMetadata {
   OusterProfile profile = OusterProfile::kLegacy;
   int pixels_per_column = 0;
   int columns_per_packet = 0;
-  int first_column = 0;  // of the window in which the sensor fires; it may go over the end of the frame
+  int first_column = 0;  // of the window in which the sensor fires; the window may go over the end of the frame
   int last_column = 0;   // inclusive
   OusterClock clock = OusterClock::kUnknown;
   OusterReturnOrder return_order = OusterReturnOrder::kStrongestToWeakest;
@@ -53,7 +53,7 @@ struct OusterMetadata {
   std::vector<double> elevation_rad;
   std::vector<double> azimuth_offset_rad;  // [pixels_per_column] clockwise
   double beam_origin_m = 0.0;              // n: from the lidar's origin to where beams begin; ranges are from the origin
-  double beam_origin_height_m = 0.0;       // how far these places lie above the origin
+  double beam_origin_height_m = 0.0;       // height of the places where beams begin above the origin
 
   std::optional<Eigen::Isometry3d> T_sensor_lidar;
   std::optional<Eigen::Isometry3d> T_sensor_imu;

@@ -1,4 +1,4 @@
-// What a model of lidar is to the driver: a reader of its packets. One file per family; the driver knows no model.
+// A model of lidar, as the driver sees it: a reader of its packets. One file per family; the driver knows no model.
 #pragma once
 
 #include <chrono>
@@ -22,8 +22,8 @@ struct Beam {
   double elevation_rad = 0.0;
   double azimuth_offset_rad = 0.0;          // clockwise, to be added to the azimuth of the column
   double origin_height_m = 0.0;             // z at which the beam starts on the axis of rotation
-  std::chrono::nanoseconds time_offset{0};  // of its shot, since that of the column
-  /// For which the head turns on beyond the azimuth of the column: time_offset (Velodyne), 0 (Ouster, most of Hesai).
+  std::chrono::nanoseconds time_offset{0};  // from the time of the column to the beam's shot
+  /// For how long the head turns on beyond the azimuth of the column until the beam's shot: time_offset (Velodyne), 0 (Ouster, most of Hesai).
   std::chrono::nanoseconds turning_time{0};
   int channel = 0;  // number on the sensor's wire, from 0
 
@@ -32,7 +32,7 @@ struct Beam {
 
 /// The stamp of a packet.
 enum class StampKind {
-  kPastHour,  // microseconds past the hour of UTC, or of the sensor's own start; it goes back to 0 at 3600 s
+  kPastHour,  // microseconds past the hour of UTC, or of the sensor's own start; the stamp goes back to 0 at 3600 s
   kAbsolute,  // since 1970 where the sensor's clock is set, else since its start, or since any year
 };
 
@@ -52,7 +52,7 @@ struct Head {
 
 /// One firing of all beams.
 struct Column {
-  double azimuth_rad = 0.0;          // clockwise seen from above, in [0, 2 pi): of a beam without offset
+  double azimuth_rad = 0.0;          // azimuth of a beam without offset, clockwise seen from above, in [0, 2 pi)
   std::chrono::nanoseconds time{0};  // since the packet's stamp
 };
 
@@ -62,12 +62,12 @@ struct PacketNumber {
   std::uint64_t modulus = 0;
 };
 
-/// What one data packet holds.
+/// The content of one data packet.
 struct Packet {
   std::chrono::nanoseconds stamp{0};       // see Head::stamp
-  std::chrono::nanoseconds duration{0};    // from its first column to that of the next packet, as the sensor turns now
+  std::chrono::nanoseconds duration{0};    // from its first column to the first column of the next packet, at the present rate of rotation
   std::optional<PacketNumber> number;      // nullopt: losses show in stamps alone
-  std::vector<Column> columns;             // in the order in which they were fired; empty where the sensor says that none of them is good
+  std::vector<Column> columns;             // in the order in which they were fired; empty where the sensor marks no column as good
   std::vector<std::uint32_t> range;        // [columns x rings x returns] in Head::range_unit_m; 0 = no return
   std::vector<std::uint8_t> reflectivity;  // [columns x rings x returns]; 0 where there is no return
 };
@@ -75,9 +75,9 @@ struct Packet {
 /// Why a payload was not used.
 enum class PacketFault {
   kNone,
-  kSize,      // not that of a packet of this model in any mode
+  kSize,      // no packet of this model has this size in any mode
   kHead,      // flags, versions, numbers of beams or blocks of another model, or of none
-  kMode,      // a return mode that is not known, or a profile other than that of the metadata
+  kMode,      // an unknown return mode, or a profile other than the metadata's
   kAzimuth,   // beyond 360 deg
   kStamp,     // a date that is none
   kChecksum,  // refused only of a sensor whose checksum was right once
@@ -88,7 +88,7 @@ class PacketReader {
  public:
   virtual ~PacketReader() = default;
 
-  /// Another one as it is now: of one that has read nothing, without what its beam file costs.
+  /// A copy of this reader in its present state; a copy of a reader that has read nothing is a new reader without the cost of its beam file.
   virtual std::unique_ptr<PacketReader> Clone() const = 0;
 
   /// Reads a data packet as a whole, or changes nothing but the reason. Bytes of any kind may come.
@@ -96,7 +96,7 @@ class PacketReader {
   /// @param packet  is overwritten; its vectors keep their memory from call to call
   virtual PacketFault Read(Bytes payload, Packet& packet) = 0;
 
-  /// Of the last packet that was read. The reference stands as long as the reader; `head_number` counts its changes.
+  /// The head of the last packet that was read. The reference is valid as long as the reader; `head_number` counts changes of the head.
   virtual const Head& head() const = 0;
   virtual int head_number() const = 0;
 

@@ -16,13 +16,13 @@ enum class OtherModel { kVlp32c, kHdl32e, kVls128, kOuster, kXt16, kXt32, kXt32m
 struct ModelRow {
   OtherModel model;
   std::string_view name;            // for people
-  bool needs_beam_file;             // without it there are no angles: Ouster
-  std::string_view beam_file_is;    // for people; empty: the angles are those of the maker's table
+  bool needs_beam_file;             // without the file there are no angles: Ouster
+  std::string_view beam_file_is;    // name of the file for people; empty: the angles come from the maker's table
   bool has_position_packets;        // as a VLP-16: 512 bytes with PPS and an NMEA sentence
   std::size_t position_size_bytes;  // of the payloads to the second port; 0 = none are used
   int usual_data_port;              // as delivered
   int usual_position_port;
-  int usual_control_port;  // TCP: of the sensor, which tells its beams there; 0 = it does not
+  int usual_control_port;  // TCP, on the sensor, where it tells its beams; 0 = the model does not tell them
 };
 
 std::span<const ModelRow> ModelTable();

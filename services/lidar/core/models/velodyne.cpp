@@ -28,7 +28,7 @@ constexpr std::size_t kLasersPerBlock = 32;
 constexpr std::size_t kVelodyneStampAt = 1200;
 constexpr std::size_t kVelodyneModeAt = 1204;
 constexpr std::size_t kVelodyneProductAt = 1205;
-// Of the blocks of a firing, by bank.
+// Flags at the begin of the blocks of a firing, by bank.
 constexpr std::array<std::uint16_t, 4> kVelodyneFlags{0xEEFF, 0xDDFF, 0xCCFF, 0xBBFF};
 
 constexpr std::uint8_t kVelodyneStrongestMode = 0x37;
@@ -50,7 +50,7 @@ struct VelodyneLayout {
   std::size_t num_lasers() const { return num_banks * kLasersPerBlock; }
   // A quarter beyond the greatest speed: what is more is a jump of a limited field of view.
   double max_gap_cdeg() const { return 1.25 * kGreatestRpm * kCdegPerNsOfRpm * static_cast<double>(period.count()); }
-  // Half of the least speed: a head that turns slower is starting, and its jumps are those of the encoder.
+  // Half of the least speed: a head that turns slower is starting, and its jumps come from the encoder.
   double min_rate_cdeg() const { return 0.5 * kLeastRpm * kCdegPerNsOfRpm * static_cast<double>(period.count()); }
 };
 
@@ -67,7 +67,7 @@ constexpr const VelodyneLayout& VelodyneLayoutOf(VelodyneModel model) { return k
 struct Laser {
   double elevation_deg = 0.0;
   double azimuth_offset_deg = 0.0;
-  nanoseconds time{0};  // since the first of its firing
+  nanoseconds time{0};  // since the first shot of the firing
 };
 
 Laser LaserOf(VelodyneModel model, std::size_t id) {
@@ -95,7 +95,7 @@ int ClockwiseCdeg(int from_cdeg, int to_cdeg) { return to_cdeg >= from_cdeg ? to
 /// How the firings of a packet follow each other.
 struct Firings {
   std::array<nanoseconds, kVelodyneNumBlocks> time{};  // since the first
-  nanoseconds duration{0};                             // until that of the next packet
+  nanoseconds duration{0};                             // from the first firing to the first of the next packet
   double rate_cdeg = 0.0;                              // per firing; 0 = the packet has no two that follow each other
   int sweep_cdeg = 0;
 };

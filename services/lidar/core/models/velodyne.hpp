@@ -19,11 +19,13 @@ inline constexpr int kNumVelodyneModels = 3;
 /// As in Head::model: "Velodyne VLP-32C".
 std::string_view NameOf(VelodyneModel model);
 
-/// The model that size, flag and product byte name. HDL-32E and some early VLP-16 share a product byte: the caller must tell them by what it knows.
+/// The model that size, flag and product byte name. HDL-32E and some early VLP-16 share a product byte: the caller must tell the two apart by other
+/// means.
 std::optional<VelodyneModel> VelodyneModelOf(Bytes payload);
 
 /// One firing of all lasers is a column: a block, of a VLS-128 four blocks; in dual return twice as many, whose returns are LAST and STRONGEST as
-/// sent. Between two columns of a packet the head may skip a part of the circle; the time that it takes is that of the rate in packets before.
+/// sent. Between two columns of a packet the head may skip a part of the circle; the time for the skipped part follows from the rate in earlier
+/// packets.
 class VelodyneReader : public PacketReader {
  public:
   explicit VelodyneReader(VelodyneModel model);

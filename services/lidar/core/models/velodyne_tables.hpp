@@ -24,7 +24,7 @@ inline constexpr std::array<double, 128> kVls128ElevationDeg{
     1.86,    -7.15,  -1.44,   3.95,  -2.1,  3.29,  -5.4,  -0.01, 4.5,   -4.19, 1.2,   -13.565, -1.22,   4.17,  -4.52, 0.87,  6.08,    -3.31, 2.08,
     -6.65,   1.42,   -10.346, -1.88, 3.51,  -6.06, -0.67, 4.72,  -3.97, 2.3,   -6.39, -1,      4.39,    -5.18, 0.21,  6.98,  -3.09,   4.98,  -3.75,
     1.64,    -8.352, -2.54,   2.85,  -5.84, -0.45, 8.43,  -2.87, 2.52,  -6.17, -1.66, 3.73,    -4.96,   0.43};
-/// Of each eight lasers that fire at once.
+/// Azimuth offsets of the eight lasers that fire at once.
 inline constexpr std::array<double, 8> kVls128AzimuthOffsetDeg{6.354, 4.548, 2.732, 0.911, -0.911, -2.732, -4.548, -6.354};
 
 }  // namespace lookout::lidar::velodyne

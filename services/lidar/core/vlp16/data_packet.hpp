@@ -19,8 +19,8 @@ enum class DataFault {
   kNone,
   kSize,
   kFlag,          // a block does not begin with the flag
-  kAzimuth,       // beyond 360 deg by more than rounding: an angle that is not one says that the block cannot be trusted
-  kReturnMode,    // not one of the three
+  kAzimuth,       // beyond 360 deg by more than rounding: a block with an impossible angle cannot be trusted
+  kReturnMode,    // not one of the three known modes
   kAzimuthOrder,  // the blocks go round more than once, which no motor does in a millisecond
   kDualPair,      // dual return, but the two blocks of a pair differ in azimuth
 };
@@ -64,7 +64,7 @@ constexpr int ClockwiseCdeg(int from_cdeg, int to_cdeg) {
 /// A part of the circle that the head went through without firing, or without being heard.
 struct Gap {
   int from_cdeg = 0;  // where the next shot was due
-  int to_cdeg = 0;    // where it came
+  int to_cdeg = 0;    // where the next shot came
 
   int width_cdeg() const { return ClockwiseCdeg(from_cdeg, to_cdeg); }
 };
@@ -73,18 +73,19 @@ struct Gap {
 struct Steps {
   std::array<int, format::kNumBlocks> gap_cdeg{};                   // [num_steps] per format::kBlockPeriod
   std::array<std::chrono::nanoseconds, format::kNumBlocks> time{};  // [num_steps] since the first shot of the packet
-  std::chrono::nanoseconds duration{0};                             // from the first shot of the packet to that of the next
+  std::chrono::nanoseconds duration{0};                             // from the first shot of the packet to the first shot of the next
   std::optional<Gap> jump;                                          // the widest, where the head did not fire for a while
 
   /// Azimuth at which the next packet begins when the head fires on.
   int end_cdeg = 0;
 };
 
-/// The manual, 9.5: the gap of a step is the azimuth of the next minus its own, across 0. The last step has the last gap before it that is
+/// The manual, 9.5: the gap of a step is the azimuth of the next step minus its own, across 0. The last step has the last gap before it that is
 /// a rate. Where a gap is a jump, or goes back, the median of the others stands in.
 ///
-/// @param known_cdeg  per format::kBlockPeriod, from packets before; 0 = not known. A jump takes as long as the head needs at this rate, else at
-///                    that of this packet, which is known to some percent only; it also stands in for the gaps of a packet that has no rate.
+/// @param known_cdeg  per format::kBlockPeriod, from packets before; 0 = not known. A jump takes as long as the head needs at this rate; where it is
+///                    0, at the rate of this packet, which is known to some percent only. `known_cdeg` also stands in for the gaps of a packet that
+///                    has no rate.
 Steps MeasureSteps(const DataPacket& packet, double known_cdeg);
 
 }  // namespace lookout::vlp16

@@ -34,7 +34,7 @@ constexpr std::uint16_t kSecondBankFlag = 0xDDFF;
 constexpr std::uint16_t kThirdBankFlag = 0xCCFF;
 constexpr std::uint16_t kFourthBankFlag = 0xBBFF;
 
-// LeiShen's driver lslidar: blocks as those of the VLP-16, in packets of 1212 bytes, or of 1206 with such a byte in the place of the product.
+// LeiShen's driver lslidar: blocks as in the VLP-16, in packets of 1212 bytes, or of 1206 bytes with one of these bytes in the place of the product.
 constexpr std::size_t kLeishenSizeBytes = 1212;
 constexpr std::uint8_t kLeishenC16 = 0x10;
 constexpr std::uint8_t kLeishenC32 = 0x20;

@@ -1,4 +1,4 @@
-// What packets of the VLP-16 family look like to the bundler.
+// How the bundler tells packets of the VLP-16 family.
 #pragma once
 
 #include "services/lidar/core/driver/bundler.hpp"

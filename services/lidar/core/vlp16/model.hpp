@@ -24,7 +24,7 @@ struct Beams {
 
 const Beams& BeamsOf(Model model);
 
-/// The same as the driver has it.
+/// The beams of a model as the driver's Head.
 const lidar::Head& HeadOf(Model model, ReturnMode mode, bool use_vertical_origin_offsets);
 
 enum class ModelChoice { kAuto, kVlp16, kPuckHiRes };

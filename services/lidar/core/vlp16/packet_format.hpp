@@ -49,18 +49,18 @@ static_assert(kNumLasers * kLaserPeriod + kRechargeTime == kSequencePeriod);
 static_assert(kPacketPeriodSingle == 1'327'104ns && kPacketPeriodDual == 663'552ns);
 static_assert(kBlockReturnsOffset + std::size_t{kSequencesPerBlock} * kNumLasers * kReturnSizeBytes == kBlockSizeBytes);
 static_assert(kNumBlocks * kBlockSizeBytes == kStampOffset);
-// HDL-32E User Manual 63-9113: 32 lasers in 46.08 us, a sequence per block. Its packets come so far apart in single return.
+// HDL-32E User Manual 63-9113: 32 lasers in 46.08 us, a sequence per block. In single return its packets come this far apart.
 inline constexpr std::chrono::nanoseconds kHdl32ePacketPeriodSingle = kNumBlocks * 46080ns;
 
 // The manual: 300 to 1200 rpm.
 inline constexpr double kMinRpm = 300.0;
 inline constexpr double kMaxRpm = 1200.0;
 
-// Both packets stamp in microseconds past the hour of UTC (of its own start where it has no PPS).
+// Data and position packets are stamped in microseconds past the hour of UTC (of the sensor's own start where it has no PPS).
 inline constexpr std::int64_t kMicrosecondsPerHour = 3'600'000'000;
 
-// Position packet ("telemetry packet"); bytes that are not named are unused or of no meaning here. Those of temperatures and of the thermal
-// state are zero in older firmware (the manual, 9.4; the same places in lidar-utils and in velodyne_decoder).
+// Position packet ("telemetry packet"); bytes that are not named are unused or of no meaning here. The bytes of temperatures and of the thermal state
+// are zero in older firmware (the manual, 9.4; the same offsets are in lidar-utils and in velodyne_decoder).
 inline constexpr int kPositionPort = 8308;  // as delivered
 inline constexpr std::size_t kPositionPacketSizeBytes = 512;
 inline constexpr std::size_t kTopBoardTemperatureOffset = 187;     // u8, degrees Celsius

@@ -154,7 +154,8 @@ PacketSequencer::Place PacketSequencer::PlaceBehindGap(Utime host_time, const Da
   return place;
 }
 
-// From the begin of one packet to that of the next where nothing was missing; the mean of some 16, as azimuths have a resolution of 0.01 deg.
+// Measures the rate from the begin of one packet to the begin of the next where none is missing between. Averages over some 16 packets, as azimuths
+// have a resolution of 0.01 deg.
 void PacketSequencer::MeasureRate(const DataPacket& packet, const PlacedPacket& placed) {
   constexpr double kShare = 1.0 / 16.0;
   const int rotated_cdeg = ClockwiseCdeg(last_->packet.azimuth_cdeg[0], packet.azimuth_cdeg[0]);
@@ -163,10 +164,10 @@ void PacketSequencer::MeasureRate(const DataPacket& packet, const PlacedPacket& 
   rate_cdeg_ += (rate_cdeg - rate_cdeg_) * (rate_cdeg_ > 0.0 ? kShare : 1.0);
 }
 
-// Of a packet; 0 when the head stands, or its rate is not known.
+// Rotation of the head during one packet; 0 when the head stands, or its rate is not known.
 double PacketSequencer::SweepCdeg() const { return rate_cdeg_ < kStillRateCdeg ? 0.0 : rate_cdeg_ * last_->packet.num_steps; }
 
-// To half of a packet; false when the rate is not known.
+// Whether the packet begins at this azimuth, to half of a packet's rotation; false when the rate is not known.
 bool PacketSequencer::IsAt(const DataPacket& packet, double azimuth_cdeg) const {
   const double off_cdeg = std::abs(std::remainder(packet.azimuth_cdeg[0] - azimuth_cdeg, format::kAzimuthsPerRevolution));
   return SweepCdeg() > 0.0 && off_cdeg <= 0.5 * SweepCdeg();
@@ -200,7 +201,7 @@ void PacketSequencer::ReleaseFirst() {
   held_.erase(held_.begin());
   const auto place = PlaceOf(first.host_time, first.packet);
   if (place.kind == Kind::kLate || place.kind == Kind::kOverlapping) {
-    ++counts_.num_overlapping;  // with one that was held beside it
+    ++counts_.num_overlapping;  // the packet overlaps a held packet
   } else {
     Give(first.host_time, first.packet, first.model, place);
   }

@@ -20,14 +20,14 @@ namespace lookout::vlp16 {
 using lidar::SensorTime;
 
 struct PlacedPacket {
-  DataPacket packet;  // its payload is valid during the call that passes it on
+  DataPacket packet;  // its payload is valid during the call that passes the packet on
   Steps steps;
   Model model = Model::kVlp16;
-  Utime host_time;            // of its arrival
-  SensorTime time{0};         // of its first shot
-  int num_lost = 0;           // packets missing before it
-  bool is_restart = true;     // nothing before it belongs to it: the first, or the sensor started anew, or paused
-  bool is_elsewhere = false;  // time goes on, but the head is not where it should be: its azimuths do not go on from those before
+  Utime host_time;            // arrival of the packet
+  SensorTime time{0};         // of the packet's first shot
+  int num_lost = 0;           // packets that are missing before this packet
+  bool is_restart = true;     // the packet does not continue earlier ones: it is the first, or the sensor started anew, or paused
+  bool is_elsewhere = false;  // time goes on, but the azimuths do not continue those of the packet before
 
   int last_gap_cdeg() const { return steps.gap_cdeg[static_cast<std::size_t>(packet.num_steps) - 1]; }
 };
@@ -60,7 +60,7 @@ class PacketSequencer {
  private:
   struct Held {
     Utime host_time;
-    DataPacket packet;  // its payload is that below
+    DataPacket packet;  // `packet.payload` refers to `payload`
     Model model = Model::kVlp16;
     std::array<std::uint8_t, format::kDataPacketSizeBytes> payload{};
   };
@@ -91,9 +91,9 @@ class PacketSequencer {
 
   Handler on_packet_;
   std::optional<PlacedPacket> last_;  // without its payload
-  double rate_cdeg_ = 0.0;            // rotation of the head per format::kBlockPeriod, smoothed; 0 = not known, or it stands
+  double rate_cdeg_ = 0.0;            // rotation of the head per format::kBlockPeriod, smoothed; 0 = not known, or the head stands
   std::vector<Held> held_;            // by time
-  std::array<Known, 512> known_{};    // the last ones passed on: of a revolution and more
+  std::array<Known, 512> known_{};    // the last packets that were passed on: more than a revolution
   std::size_t next_known_ = 0;
   std::size_t num_late_in_a_row_ = 0;
   BlindSector blind_sector_;

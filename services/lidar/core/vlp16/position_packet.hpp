@@ -17,7 +17,7 @@ namespace lookout::vlp16 {
 enum class PositionFault {
   kNone,
   kSize,
-  kPps,       // not one of the four states
+  kPps,       // not one of the four known states
   kSentence,  // bytes that are not printable ASCII, no $ at the start, or no end (a serial line of the wrong polarity or rate)
 };
 inline constexpr std::array<std::string_view, 4> kPositionFaultNames{"position_packets_whole", "position_bad_size", "position_bad_pps",

@@ -23,8 +23,8 @@ constexpr int kMaxBackHalfCdeg = 2 * kMaxGapCdeg;
 // The slowest revolution takes 0.2 s. The caps leave a head that stands or starts some room, and hold times in 32 bits of nanoseconds.
 constexpr nanoseconds kMaxScanDuration = std::chrono::seconds(2);
 constexpr int kMaxColumns = 65536;
-// The time behind a jump of a limited field of view is known to some tenths of a percent until the next packet comes. What lies farther back than
-// that can be was no such jump: the scan ends.
+// The time behind a jump of a limited field of view is known to some tenths of a percent until the next packet comes. A step back in time by more
+// than kMaxOverlap does not come from such a jump: the scan ends.
 constexpr nanoseconds kMaxOverlap = std::chrono::milliseconds(1);
 static_assert(kMaxScanDuration < nanoseconds(std::numeric_limits<std::int32_t>::max()));
 constexpr int kUsualColumns = 2048;  // a scan at 600 rpm has 1808

@@ -24,8 +24,8 @@ class ScanCutter {
 
   /// Cost: proportional to the returns; no trigonometry.
   ///
-  /// @param placed  its time is greater than that of the packet before
-  /// @param clock   for the scan that begins in it
+  /// @param placed  is later than the packet before
+  /// @param clock   for a scan that begins in this packet
   void Add(const PlacedPacket& placed, const ClockReading& clock, const PacketCounts& counts);
 
   /// Later packets do not continue the earlier ones: ends the scan, if there is one.
@@ -56,12 +56,12 @@ class ScanCutter {
   Model model_ = Model::kVlp16;  // of the scan that is being made
   ReturnMode mode_ = ReturnMode::kStrongest;
   const Beams* beams_ = &BeamsOf(Model::kVlp16);  // of the scan that is being made
-  Scan scan_;                                     // its arrays are larger than num_columns_ while the scan is being made
+  Scan scan_;                                     // while the scan is being made its arrays have room for more than num_columns_
   int num_columns_ = 0;                           // 0 = no scan has begun
   int capacity_columns_ = 0;
   bool is_after_cut_ = false;          // the next scan begins at the cut
   int num_lost_before_scan_ = 0;       // packets lost that had columns in the scan that is to begin
-  int reach_half_cdeg_ = 0;            // azimuth reached: noise of the encoder may go back behind it
+  int reach_half_cdeg_ = 0;            // greatest azimuth so far: by noise of the encoder a column may lie a little before it
   int advance_half_cdeg_ = 0;          // of the last column to the next
   std::int64_t sum_gap_cdeg_ = 0;      // of the columns of this scan
   std::chrono::nanoseconds start_{0};  // sensor time of scan_.time

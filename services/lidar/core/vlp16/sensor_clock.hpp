@@ -18,11 +18,11 @@ using lidar::SensorTime;
 using lidar::TimeChoice;
 using lidar::TimeSource;
 
-/// What the clock needs of a data packet.
+/// The parts of a data packet that the clock uses.
 struct StampedPacket {
   Utime host_time;
-  SensorTime time{0};                     // of its stamp
-  std::chrono::microseconds duration{0};  // from then to its end, when it was sent
+  SensorTime time{0};                     // of the packet's stamp
+  std::chrono::microseconds duration{0};  // from the stamp to the end of the packet, when it was sent
   std::uint32_t stamp_us = 0;             // past the hour
   bool is_restart = true;
 };
@@ -34,8 +34,8 @@ class SensorClock {
   /// A data packet, in order of sensor time.
   ///
   /// Host: UTC is the fit of (host - sensor): see ClockFit. Sensor: UTC is the stamp in the hour that is nearest to what the last valid RMC said,
-  /// else to the host's clock. Once found, the hour is kept over the end of each hour, day and year, and through steps of less than half an hour; it
-  /// is looked for again when it is more than 45 minutes off.
+  /// else to the host's clock. Once found, the hour is kept over the end of each hour, day and year, and through steps of less than half an hour;
+  /// when the hour is more than 45 minutes off it is looked for again.
   void OnDataPacket(const StampedPacket& packet);
 
   /// @param time  of the packet's stamp; nullopt before the first data packet
@@ -56,7 +56,7 @@ class SensorClock {
     std::optional<SensorTime> time;  // nullopt before the first data packet, and of arrivals before a restart
   };
   struct Rmc {
-    Instant came;  // when it told a new time
+    Instant came;  // when an RMC told a new time
     std::chrono::microseconds utc{0};
     bool is_agreeing = true;  // with the stamp of the position packet in which it was new
   };

@@ -42,9 +42,10 @@ constexpr double kVelocityCorrelationS = 10.0;
 // Accuracy of heave: 5 cm or 5 % (Kongsberg MRU and Seapath data sheets).
 constexpr double kHeaveSdM = 0.05;
 
-// A contradiction that lasts so long without changing is one of the state.
+// A contradiction that lasts this long without changing is a fault of the state.
 constexpr auto kMaxRefusal = 3s;
-// Of positions while accelerometers are used, whose positions are off by less than a metre by then: a jump is rather the receiver's.
+// The bound for positions while accelerometers are used: by then the propagated position is off by less than 1 m, so a jump is rather a fault of the
+// receiver.
 constexpr auto kMaxStrapdownRefusal = 10s;
 constexpr double kEvenInSds = 5.0;
 // A difference that changes, while the refused measurements agree with each other, is of the state too: an IMU leads it away ever faster. A compass
@@ -151,7 +152,7 @@ bool IsAttitudeGivenUp(const Eigen::Vector3d& angles_rad, const Eigen::Vector3d&
   return true;
 }
 
-// The lever arm in the level frame. Without heading its east and north remain in the position, which is then that of the antenna.
+// The lever arm in the level frame. Without heading its east and north parts are 0, as the position is then the antenna's.
 Eigen::Vector3d LeverLevel(const FilterParams& params, const State& state) {
   Eigen::Vector3d lever_level_m = state.nominal.q_level_vessel * AntennaLever(params);
   if (!state.aiding.has_heading) lever_level_m.head<2>().setZero();
@@ -160,8 +161,8 @@ Eigen::Vector3d LeverLevel(const FilterParams& params, const State& state) {
 
 double White(double sd, double slow_sd) { return std::sqrt(std::max(sd * sd - slow_sd * slow_sd, 0.01 * sd * sd)); }
 
-// Satellites that come and go change the deviation that a receiver states, and its error. A little of that is the same error; much is another one,
-// but not each small step between, or many of them would be many independent measurements.
+// Satellites that come and go change the deviation that a receiver states, and its error. A small change leaves the error as it is, a great change
+// begins another error. Small steps do not each begin an error, or many steps would count as many independent measurements.
 void UseFixErrorModel(const ErrorModel& model, State& state) {
   const double ratio = model.sd / state.aiding.fix_error_begun_sd_m;
   if (model.kind != state.aiding.fix_error_model.kind || ratio < kSameErrorRatio || ratio * kSameErrorRatio > 1.0) {
@@ -279,7 +280,7 @@ double HeadingOf(const State& state) { return AnglesOf(HereOf(state).R_here_leve
 
 // The heading becomes known.
 void BeginHeading(double heading_rad, double noise_rad, HeadingSource source, const FilterParams& params, State& state, GateCounts& counts) {
-  // Meanwhile position is that of the antenna, as it was before there was a heading.
+  // While the heading is replaced the position is the antenna's, as before there was a heading.
   if (state.aiding.has_position && state.aiding.has_heading) ShiftPosition(LeverLevel(params, state), state);
   const double turned_rad = WrapToPi(heading_rad - state.nominal.heading_error_rad - HeadingOf(state));
   const bool was_measured = state.aiding.has_heading && state.aiding.heading_source != HeadingSource::kCourse;

@@ -19,15 +19,15 @@ struct VelocityMeasurement {
   double sd_mps = 0.0;  // per axis
   double course_rad = kNan;
   double speed_mps = 0.0;
-  bool has_own_time = false;  // else it counts as measured when it came
+  bool has_own_time = false;  // else the velocity counts as measured when it came
 };
 
 /// One epoch of a receiver.
 struct FixMeasurement {
   std::string source;
   bool is_gga = false;
-  bool begins_anew = false;  // it alone decides the place: begins_time_scale of GnssFix, or the first at a new place (believed_place.hpp)
-  GeodeticPlace antenna;     // where the height is not said, that of the datum
+  bool begins_anew = false;  // this fix alone decides the place: begins_time_scale of GnssFix, or the first fix at a new place (believed_place.hpp)
+  GeodeticPlace antenna;     // without a stated height, at the height of the datum
   bool has_height = false;
   double horizontal_sd_m = 0.0;  // per axis
   double vertical_sd_m = 0.0;
@@ -36,8 +36,8 @@ struct FixMeasurement {
 
 /// Results of gating.
 struct GateCounts {
-  std::int64_t num_gated = 0;    // contradict the state by more than chance
-  std::int64_t num_renewed = 0;  // contradicted it for so long, and so evenly, that the state was given up
+  std::int64_t num_gated = 0;    // measurements that contradict the state by more than chance
+  std::int64_t num_renewed = 0;  // measurements that contradicted the state for so long, and so evenly, that the state was given up
   // Of gated measurements: sum of normalised innovations squared, and of their degrees of freedom.
   double nis_sum = 0.0;
   std::int64_t num_degrees = 0;
@@ -56,7 +56,7 @@ void Apply(const OdometryMotion& motion, const FilterParams& params, State& stat
 /// Gravity as the IMU feels it: levels the attitude while accelerometers do not propagate the velocity.
 void Apply(const ImuSample& sample, const FilterParams& params, State& state, GateCounts& counts);
 
-/// Time has come so far. The vessel floats: its up is that of the water, in the mean. At most once a second.
+/// Time has come so far. The vessel floats: on average its height is the water's. At most once a second.
 struct Tick {};
 void Apply(const Tick& tick, const FilterParams& params, State& state, GateCounts& counts);
 

@@ -9,10 +9,10 @@
 
 namespace lookout::navigator {
 
-/// A fix is believed where a boat can have got there since the last believed fix; the first one is. Farther off either the receiver is wrong (its
-/// last place of yesterday, that of its almanac, a changed digit) or the earlier fixes were. So fixes out of reach are held until they have agreed
-/// with each other, and no fix came within reach, for as long as the earlier ones did: at least kLeastHold, at most kMostHold. Then the boat is
-/// there.
+/// A fix is believed where a boat can have got there since the last believed fix; the first fix is always believed. Farther off either the receiver
+/// is wrong (it sends yesterday's last place, or the almanac's, or a changed digit) or the earlier fixes were wrong. So fixes out of reach are held
+/// until they have agreed with each other, and no fix came within reach, for as long as the earlier ones did: at least kLeastHold, at most kMostHold.
+/// Then the boat is there.
 ///
 /// A place nearer than 8.5 km (kMostSpeedMps in kMostHold) comes within reach as time passes without a believed fix: after 1 s at 140 m, after 13 s
 /// at a minute of latitude.
@@ -22,7 +22,7 @@ class BelievedPlace {
  public:
   /// No boat has gone faster: the world water speed record (Spirit of Australia, 1978).
   static constexpr double kMostSpeedMps = 142.0;
-  /// How far a boat gets in the time by which measurements are off that have none of their own.
+  /// How far a boat gets in the time by which measurements without a time of their own are off.
   static constexpr double kSlackM = 50.0;
   /// Multiple of the deviations of both fixes, each per axis.
   static constexpr double kSlackInSds = 7.0;
@@ -34,7 +34,7 @@ class BelievedPlace {
   enum class Verdict {
     kBelieved,
     kHeld,      // out of reach
-    kNewPlace,  // out of reach for so long that it is believed
+    kNewPlace,  // fixes were out of reach for so long that this one is believed
   };
 
   Verdict Judge(Utime time, const GeodeticPlace& place, double sd_m);
@@ -42,18 +42,18 @@ class BelievedPlace {
   /// The fix that was held last, until there is a new place.
   struct Held {
     Utime time;
-    double distance_m = 0.0;  // from the last that was believed
-    double since_s = 0.0;     // after that
-    double rest_s = 0.0;      // for which it would have to stay until it is believed
+    double distance_m = 0.0;  // from the last believed fix
+    double since_s = 0.0;     // after the last believed fix
+    double rest_s = 0.0;      // for how long fixes must stay there until they are believed
   };
   const std::optional<Held>& held() const { return held_; }
 
  private:
-  // Fixes each of which was within reach of the one before it.
+  // Successive fixes, each within reach of the fix before.
   struct Run {
     Utime first;
     Utime last;
-    GeodeticPlace place;  // of the last, on the ellipsoid
+    GeodeticPlace place;  // of the last fix, on the ellipsoid
     double sd_m = 0.0;
     std::int64_t count = 0;
   };

@@ -25,7 +25,7 @@ void LearnStep(double before_deg, double now_deg, double& step_deg) {
 
 double FrozenPlaces::Place::StepM() const {
   if (std::isnan(latitude_step_deg) && std::isnan(longitude_step_deg)) return kUnknownStepM;
-  // Of a way along a parallel only the longitude's step is known: a digit is a digit.
+  // On a way along a parallel only the longitude's step is known: the latitude's step then counts as equal, as both have the same digits.
   const double degrees = std::isnan(latitude_step_deg) ? longitude_step_deg : latitude_step_deg;
   return kMetresPerDeg * Hypot(degrees, std::isnan(longitude_step_deg) ? degrees : longitude_step_deg);
 }

@@ -12,9 +12,9 @@
 
 namespace lookout::navigator {
 
-/// A place that repeats to the last digit is that of a boat that lies still, of a receiver that holds its place at walking pace, or of a receiver
-/// that is frozen while its clock goes on. It is frozen where the boat has moved since the place first came: by the velocity that the same receiver
-/// states, or, where it states none, by the lidar in the first seconds. Its next other place is believed again.
+/// A place that repeats to the last digit comes from a boat that lies still, from a receiver that holds its place at walking pace, or from a receiver
+/// that is frozen while its clock goes on. The place is frozen where the boat has moved since the place first came: by the velocity that the same
+/// receiver states, or, where it states none, by the lidar in the first seconds. The receiver's next different place is believed again.
 ///
 /// A receiver that says "at rest" is believed against the lidar, and so is a place that stood before the lidar's way began: a ship that gathers way
 /// looks like a shore that moves.
@@ -34,7 +34,7 @@ class FrozenPlaces {
 
   /// @return whether the place of the fix is frozen
   bool Judge(const GnssFix& fix);
-  /// @return whether it is of a receiver whose last place was frozen
+  /// @return whether the receiver's last place was frozen
   bool Judge(const GroundVelocity& velocity);
   void Add(const OdometryMotion& motion);
 
@@ -42,8 +42,8 @@ class FrozenPlaces {
   struct Frozen {
     std::string source;
     Utime time;
-    double for_s = 0.0;  // since its place first came
-    double way_m = 0.0;  // of the boat since then
+    double for_s = 0.0;  // since the frozen place first came
+    double way_m = 0.0;  // way of the boat since then
   };
   const std::optional<Frozen>& last() const { return last_; }
 
@@ -56,7 +56,7 @@ class FrozenPlaces {
     double latitude_step_deg = kNan;
     double longitude_step_deg = kNan;
     Utime since;
-    Eigen::Vector2d way_m = Eigen::Vector2d::Zero();        // of the receiver when it first came
+    Eigen::Vector2d way_m = Eigen::Vector2d::Zero();        // Receiver::WayAt when the place first came
     Eigen::Vector2d lidar_way_m = Eigen::Vector2d::Zero();  // lidar_way_m_ likewise
     bool is_frozen_by_lidar = false;
 
@@ -64,7 +64,7 @@ class FrozenPlaces {
   };
   struct Receiver {
     std::map<std::string, Place, std::less<>> places;  // by sentence type
-    Eigen::Vector2d way_m = Eigen::Vector2d::Zero();   // by its velocities up to the last one, east and north
+    Eigen::Vector2d way_m = Eigen::Vector2d::Zero();   // sum of the receiver's velocities until velocity_time, east and north
     Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
     std::optional<Utime> velocity_time;
     bool is_frozen = false;

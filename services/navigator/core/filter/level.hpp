@@ -37,7 +37,7 @@ struct Here {
   double heading_per_east_radpm = 0.0;
 };
 
-/// Source: directions by LocalFrame at the boat's place, exact; the convergence is that of a sphere, bounded at 6 m from a pole.
+/// Source: directions by LocalFrame at the boat's place, exact; the convergence of meridians is that on a sphere, bounded at 6 m from a pole.
 Here HereOf(const State& state);
 
 /// Gravity and rotation of the level frame; where no place is known yet, standard gravity and no rate.

@@ -199,7 +199,7 @@ void ForgetOld(const FilterParams& params, State& state) {
     const bool is_carried =
         is_turn_known ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad : source.IsWithin(state.time, max_age);
     if (!is_carried && !source.IsWithin(state.time, params.max_attitude_age)) {
-      // Position is that of the antenna again.
+      // Without heading the position is the antenna's again.
       if (state.aiding.has_position) ShiftPosition(state.nominal.R_level_vessel() * AntennaLever(params), state);
       state.aiding.has_heading = false;
       state.aiding.heading_source = HeadingSource::kNone;

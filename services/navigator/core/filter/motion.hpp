@@ -14,8 +14,8 @@ namespace lookout::navigator::filter {
 /// its rate of turn and its acceleration, both of which fade (Singer, "Estimating Optimal Tracking Filter Performance for Manned Maneuvering
 /// Targets", IEEE AES 1970): a first-order Gauss-Markov process each.
 /// The level frame follows the boat.
-/// @param sample  of the IMU, for the whole interval; nullptr: there is none
-/// @param time    not before that of the state
+/// @param sample  of the IMU, for the whole interval; nullptr: no IMU
+/// @param time    not before the time of the state
 /// Cost: some 2 microseconds.
 void Propagate(const ImuSample* sample, Utime time, const FilterParams& params, State& state);
 

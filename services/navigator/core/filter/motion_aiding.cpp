@@ -16,7 +16,7 @@ constexpr double kMotionSdShare = 0.02;  // of the way
 constexpr double kMotionTurnSdRad = DegToRad(0.02);
 constexpr double kMotionTurnSdShare = 0.01;  // of the turn
 
-// What the motion says, less what the state has done since the last scan.
+// The motion's way and turn, less the way and turn of the state since the last scan.
 Innovation<3> MotionOf(const OdometryMotion& motion, const FilterParams& params, const State& state) {
   const auto now = PlanarPlaceOf(params, state);
   const auto [sin, cos] = SinCosOf(state.nominal.scan_heading_rad);

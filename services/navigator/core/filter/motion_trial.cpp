@@ -11,7 +11,7 @@ namespace lookout::navigator::filter {
 
 namespace {
 
-// Of two values of a slow error, so long apart: what both have in common says nothing of their difference.
+// Variance of the difference of two measurements with a slow error, `apart_s` apart. The part of the error that both have in common cancels.
 double VarianceOfDifference(double before, double now, const ErrorModel& slow, double apart_s) {
   const double common = slow.sd * slow.sd * Exp(-apart_s / slow.time_constant_s);
   return std::max(0.0, before - common) + std::max(0.0, now - common);
@@ -21,17 +21,17 @@ double VarianceOfDifference(double before, double now, const ErrorModel& slow, d
 
 void MotionTrial::Means::Add(double new_square, double new_of_sensors, double new_of_motions) {
   constexpr double kGain = 0.1;           // the last half minute
-  constexpr double kMostFactor2 = 100.0;  // one window more than this is a fault of something else
+  constexpr double kMostFactor2 = 100.0;  // bound on a single window: a greater difference has another cause
   const double square_within = std::min(new_square, new_of_sensors + kMostFactor2 * new_of_motions);
   if (!std::isfinite(square_within)) return;
-  if (of_motions == 0.0) *this = {new_of_sensors + new_of_motions, new_of_sensors, new_of_motions};  // as they say, until more is known
+  if (of_motions == 0.0) *this = {new_of_sensors + new_of_motions, new_of_sensors, new_of_motions};  // as stated, until more is known
   square += kGain * (square_within - square);
   of_sensors += kGain * (new_of_sensors - of_sensors);
   of_motions += kGain * (new_of_motions - of_motions);
 }
 
-// What is left of the squares when twice the variance of the sensors and once that of the motions are taken off: so much they exceed their mean by
-// chance.
+// Takes twice the variance of the sensors and once the variance of the motions off the squares, as squares exceed their mean by so much by chance;
+// the rest is due to the motions.
 double MotionTrial::Means::Factor() const {
   if (of_motions <= 0.0) return 1.0;
   return std::sqrt(std::max(1.0, (square - 2.0 * of_sensors - of_motions) / of_motions));
@@ -73,7 +73,7 @@ void MotionTrial::Add(const OdometryMotion& motion, const Eigen::Matrix3d& noise
   if (apart_s < kWindowS) return;
   if (begin_->is_way_measured) {
     const Eigen::Vector2d off_m = way_level_m_ - (now.p_level_m - begin_->p_level_m);
-    // The direction of the way is that of the heading, at the begin.
+    // The direction of the way is off by the error of the heading at the begin.
     const double by_heading_m2 = begin_->heading_variance_rad2 * way_level_m_.squaredNorm();
     const double of_sensors_m2 =
         VarianceOfDifference(begin_->place_variance_m2, now.place_variance_m2, state.aiding.fix_error_model, apart_s) + 0.5 * by_heading_m2;

@@ -12,11 +12,12 @@ namespace lookout::navigator::filter {
 
 struct State;
 
-/// What the lidar sees may be a ship that moves, or a bank in steep waves: its motions are then wrong by more than they state, scan after scan the
-/// same way, and each alone looks well. While position or heading are measured, the sum of the motions of kWindowS is therefore held against the way
-/// or the turn of the state. By how much more they differ than both state is remembered, and the stated deviation of later motions counts so many
-/// times: also when a receiver or a compass stops, and nothing else says how far they may be believed (covariance matching: R. K. Mehra, "On the
-/// identification of variances and adaptive Kalman filtering", IEEE Transactions on Automatic Control 15, 1970).
+/// The lidar may see a ship that moves, or a bank in steep waves: its motions are then wrong by more than they state, scan after scan in the same
+/// direction, and each motion alone looks right. While position or heading are measured, the sum of the motions over kWindowS is therefore compared
+/// with the way or the turn of the state. Where the two differ by more than their stated deviations explain, the ratio is remembered, and the stated
+/// deviations of later motions are multiplied by it: also when a receiver or a compass stops, and nothing else tells how far the motions can be
+/// trusted (covariance matching: R. K. Mehra, "On the identification of variances and adaptive Kalman filtering", IEEE Transactions on Automatic
+/// Control 15, 1970).
 class MotionTrial {
  public:
   static constexpr double kWindowS = 3.0;
@@ -41,7 +42,7 @@ class MotionTrial {
     GeodeticPlace origin;  // of the level frame
     Eigen::Vector2d p_level_m = Eigen::Vector2d::Zero();
     double heading_rad = 0.0;
-    double place_variance_m2 = 0.0;  // of east and north, greater of both
+    double place_variance_m2 = 0.0;  // the greater of the variances of east and north
     double heading_variance_rad2 = 0.0;
     bool is_way_measured = false;
     bool is_turn_measured = false;

@@ -22,7 +22,7 @@ struct FilterParams {
   /// Measurements that are older than this when they come are not used.
   std::chrono::microseconds max_latency{0};
   std::chrono::microseconds max_position_age{0};  // propagated without a fix for at most so long,
-  double max_coast_sd_m = 0.0;                    // and while its deviation has not grown by more than this
+  double max_coast_sd_m = 0.0;                    // and while the position's deviation has not grown by more than this
   std::chrono::microseconds max_attitude_age{0};  // heading and tilt likewise, where no IMU propagates them
   double max_heading_coast_sd_rad = 0.0;
 

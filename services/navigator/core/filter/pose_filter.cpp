@@ -112,7 +112,7 @@ Pose ToPose(const State& state, const std::optional<GeodeticPlace>& datum, const
     pose.covariance(kRowHeading, kRowHeading) += state.aiding.HeadingDoubtRad() * state.aiding.HeadingDoubtRad();
   } else {
     Unknown(kRowHeading, 1, pose.covariance);
-    // Position is that of the antenna.
+    // Without heading the position is the antenna's, which may lie this far from the reference point in any direction.
     const double lever_m = params.p_vessel_antenna_m.head<2>().norm();
     pose.covariance.diagonal().head<2>().array() += lever_m * lever_m;
   }

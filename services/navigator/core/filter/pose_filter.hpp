@@ -52,9 +52,9 @@ class PoseFilter {
   /// Time has come so far: nothing else need have.
   void AdvanceTo(Utime time);
 
-  /// From the measurements so far.
+  /// The pose from the measurements so far.
   ///
-  /// @param time  not before that of the last call
+  /// @param time  not before the time of the last call
   Pose At(Utime time);
 
   /// Arrival of the last usable fix.
@@ -62,7 +62,7 @@ class PoseFilter {
   /// A sensor of heading has come.
   bool has_had_heading() const { return has_had_heading_; }
   const FilterCounts& counts() const { return counts_; }
-  /// Of all measurements that were gated: the sum of normalised innovations squared, and of their degrees of freedom.
+  /// Sums over all measurements that were gated: of their normalised innovations squared, and of their degrees of freedom.
   double nis_sum() const { return nis_sum_; }
   std::int64_t num_nis_degrees() const { return num_nis_degrees_; }
 
@@ -90,7 +90,7 @@ class PoseFilter {
     Utime time;
     Measurement measurement;
     bool is_counted = false;  // in the counts
-    filter::State after;      // once it is processed
+    filter::State after;      // state after this event, once the event is processed
   };
 
   void SetDatum(const GeodeticPlace& datum);
@@ -130,10 +130,10 @@ class PoseFilter {
   };
   std::optional<Believed> last_believed_;
   std::string doubted_source_;
-  std::deque<Event> events_;  // by time; of one time attitude before position
+  std::deque<Event> events_;  // by time; at equal times attitude before position
   std::size_t num_processed_ = 0;
   std::optional<filter::State> base_;     // before events_
-  std::optional<ImuSample> base_sample_;  // the last one before events_
+  std::optional<ImuSample> base_sample_;  // the last sample before events_
   Utime base_sample_time_{};
   std::optional<Utime> newest_;  // of all measurements
   std::optional<Utime> last_fix_arrival_;

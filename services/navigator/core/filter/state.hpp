@@ -23,7 +23,7 @@ enum Part : int {
   kRate = 9,           // rad/s, vessel frame: bias of the gyroscopes, or without them the rate itself
   kAcceleration = 12,  // m/s2: bias of the accelerometers in the vessel frame; without strapdown navigation, acceleration in the level frame
   kFixError = 15,      // common error of the receiver's positions for a while: east, north, up, m
-  kHeadingError = 18,  // the same of the compass, rad, clockwise
+  kHeadingError = 18,  // slow error of the compass, rad, clockwise
   kWaterLevel = 19,    // up of the origin while the boat lies still on calm water, m
   kScanPlace = 20,     // of the reference point at the end of the last scan: east, north, m, and rotation about up, rad (ScanPlace)
   kNumErrors = 23,
@@ -41,7 +41,7 @@ enum Part : int {
 using ErrorVector = Eigen::Matrix<double, kNumErrors, 1>;
 using ErrorCovariance = Eigen::Matrix<double, kNumErrors, kNumErrors>;
 
-/// Whose slow error it is: of another sensor, or of another kind of fix, it begins anew.
+/// The source of a slow error. With another sensor, or another kind of fix, the error begins anew.
 enum class ErrorKind { kNone, kRtk, kGnss, kTwoAntennas, kCompass, kCourse };
 
 /// Speed of a boat before it is measured: standard deviation of each component ("a boat at 3 m/s").
@@ -51,16 +51,16 @@ inline constexpr double kUnknownSpeedSdMps = 3.0;
 struct ErrorModel {
   ErrorKind kind = ErrorKind::kNone;
   double sd = 0.0;
-  double up_factor = 1.0;  // of a fix: of its up against sd
+  double up_factor = 1.0;  // of a fix: deviation of up as a multiple of sd
   double time_constant_s = 1.0;
 };
 
 /// How long a measurement has been refused, one after the other.
 struct Refusals {
-  // Without the difference to the state changing.
+  // Since when the difference to the state has not changed.
   std::optional<Utime> since;
   Eigen::Vector3d first_residual = Eigen::Vector3d::Zero();
-  // While each agreed with the one before it; the value of the last one.
+  // Since when each refused measurement has agreed with the one before; then time and value of the last measurement.
   std::optional<Utime> agreeing_since;
   Utime last;
   GeodeticPlace last_place;  // of fixes
@@ -73,7 +73,7 @@ struct UseTimes {
   double interval_s = 0.0;  // between the last two, at most 2 s
 
   void Use(Utime time);
-  /// They have stopped when none has come for a second, or, of slow ones, for one and a half of their intervals and half a second.
+  /// Measurements have stopped when none has come for 1 s, or, of slow measurements, for one and a half of their intervals plus 0.5 s.
   bool IsStoppedAt(Utime time) const;
   bool IsWithin(Utime time, std::chrono::microseconds age) const { return last && time - *last <= age; }
 };
@@ -106,7 +106,7 @@ struct NominalState {
 /// The place from which the next motion of the odometer goes. It is a copy of the state at the end of a scan, with its covariance (stochastic
 /// cloning: Roumeliotis and Burdick, ICRA 2002), so that a motion is compared with what the state itself has done since.
 struct ScanPlace {
-  std::optional<Utime> time;  // nullopt: there is none, or the state was set anew since
+  std::optional<Utime> time;  // nullopt: no scan yet, or the state was set anew since the last scan
   bool has_position = false;
   bool has_heading = false;
 };
@@ -125,13 +125,13 @@ struct AidingStatus {
   Eigen::Vector3d last_accelerometer_bias_mps2 = Eigen::Vector3d::Zero();
 
   ErrorModel fix_error_model;
-  double fix_error_begun_sd_m = 0.0;  // its deviation when it began
+  double fix_error_begun_sd_m = 0.0;  // deviation of the fix error when this error began
   ErrorModel heading_error_model;
   HeadingSource heading_source = HeadingSource::kNone;
 
   UseTimes fix;
   UseTimes sensor_heading;  // of an attitude sensor or a compass
-  UseTimes course;          // in its place
+  UseTimes course;          // of a course over ground that serves as heading
   UseTimes attitude_heading;
   UseTimes tilt;
   UseTimes heave;
@@ -246,7 +246,7 @@ struct PlanarPlace {
 };
 PlanarPlace PlanarPlaceOf(const FilterParams& params, const State& state);
 
-/// Copies the place of now into that of the last scan.
+/// Makes the present place the place of the last scan.
 void SetScanPlace(const FilterParams& params, State& state);
 
 /// Moves the place that p_level_m describes by `lever_level_m`, which turns with the vessel; east and north only. The place of the last scan is void.
