@@ -47,8 +47,8 @@ class Bundler {
   struct Form {
     std::function<bool(std::size_t)> is_data_size;
     std::function<bool(std::size_t)> is_position_size;
-    std::function<bool(Bytes)>
-        ends_scan;  // called once with each data packet; true ends the bundle with this packet. Empty: bundles are short enough without
+    /// Called once with each data packet; true ends the bundle with this packet. Empty: bundles are short enough without.
+    std::function<bool(Bytes)> ends_scan;
     std::chrono::milliseconds max_wait = kMaxWait;
   };
 
