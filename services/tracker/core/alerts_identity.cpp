@@ -114,7 +114,14 @@ void Alerts::Rename(std::int64_t from_thing, std::int64_t to_thing, Utime time) 
     stays.alert->end = AlertEnd::kNone;
     for (std::size_t i = 0; i < stays.causes.size(); ++i) stays.causes[i].Merge(goes.causes[i]);
     stays.warning.Merge(goes.warning);
-    if (!is_open && stays.told) stays.told->Tell(time, std::array{PlaceOf(*goes.alert)});
+    if (!is_open) {
+      // The acknowledgements of both cover the places of both.
+      if (!stays.told) {
+        stays.told.emplace(to_thing == kUnnamed ? ToldPlaces::Kind::kThings : ToldPlaces::Kind::kLand);
+        stays.told->Tell(time, std::array{PlaceOf(*stays.alert)});
+      }
+      stays.told->Tell(time, std::array{PlaceOf(*goes.alert)});
+    }
   }
   goes.alert->SetState(AlertState::kCleared, time);
   goes.alert->end = AlertEnd::kMerged;

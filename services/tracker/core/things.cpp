@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <iterator>
 #include <set>
 
 #include "services/tracker/core/beside.hpp"
@@ -18,10 +17,17 @@ constexpr double kLongM = 8.0;
 bool IsLikely(const Track& track) { return track.status == TrackStatus::kTentative && track.existence_probability >= Proof::kLikely; }
 bool IsStructure(const Track& track) { return track.kind == TrackKind::kStructure || track.rectangle.length_m >= kLongM; }
 
+// Of two the one that names both: land, then what was confirmed first, then what is tentative.
+std::int64_t NameOf(std::int64_t one, std::int64_t other) {
+  if ((one < 0) != (other < 0)) return std::max(one, other);
+  return one < 0 ? std::max(one, other) : std::min(one, other);
+}
+
 // How far apart two that stand may be, neither of land or a structure, and are one all the same.
 double GapOfOne(const Track& track, const Track& other, Utime time, bool is_own_still) {
   if (is_own_still) return Things::kBesideM;
-  return IsKnown(track, time) != IsKnown(other, time) ? Company::kPartM : Things::kTouchM;
+  const auto is_known = [time](const Track& of) { return IsConfirmed(of) && ToSeconds(time - of.first) >= Things::kKnownS; };
+  return is_known(track) != is_known(other) ? Things::kPartM : Things::kTouchM;
 }
 
 }  // namespace
@@ -30,15 +36,10 @@ void Things::Update(Utime time, std::span<const Track> tracks, std::span<const E
   merged_.clear();
   std::vector<const Track*> standing;
   standing.reserve(tracks.size());
-  std::vector<const Track*> moving;
   std::set<std::int64_t> ids;
   for (const auto& track : tracks) {
     const bool stands = track.velocity_mps.isZero(0.0) || (proof != nullptr && proof->MayBePiece(track.id));
-    if ((!IsConfirmed(track) && !IsLikely(track)) || track.outline_m.empty()) continue;
-    if (!stands) {
-      moving.push_back(&track);
-      continue;
-    }
+    if ((!IsConfirmed(track) && !IsLikely(track)) || !stands || track.outline_m.empty()) continue;
     standing.push_back(&track);
     ids.insert(track.id);
     auto& member = members_.try_emplace(track.id, Member{track.id, 0, false, false}).first->second;
@@ -60,16 +61,10 @@ void Things::Update(Utime time, std::span<const Track> tracks, std::span<const E
       if (with.thing == own.thing) continue;
       const bool belongs = with.thing == kLandTrack || with.is_of_structure;
       if (!IsWithin(*track, *other, belongs ? kBesideM : GapOfOne(*track, *other, time, is_own_still))) continue;
-      const auto name = FirstOf(own.thing, with.thing);
+      const auto name = NameOf(own.thing, with.thing);
       Join(name == own.thing ? with.thing : own.thing, name);
     }
   }
-  std::erase_if(standing, [this](const Track* track) {
-    const auto& member = members_.at(track->id);
-    return member.thing != track->id || member.is_joined;
-  });
-  company_.Update(time, moving, standing);
-  std::ranges::copy(company_.renamed(), std::back_inserter(merged_));
 }
 
 // A thing is named by its first track. Where that casts off, the rest belongs to it no more.
@@ -78,7 +73,7 @@ void Things::RenameOrphans() {
   for (auto& [track, member] : members_) {
     if (member.thing == kLandTrack || members_.contains(member.thing)) continue;
     const auto [name, is_first] = renamed.try_emplace(member.thing, track);
-    name->second = FirstOf(name->second, track);
+    name->second = NameOf(name->second, track);
   }
   for (auto& [track, member] : members_) {
     const auto name = renamed.find(member.thing);
@@ -101,7 +96,6 @@ void Things::Join(std::int64_t from_thing, std::int64_t to_thing) {
 }
 
 void Things::Rename(std::int64_t from_track, std::int64_t to_track) {
-  company_.Rename(from_track, to_track);
   auto moved = members_.extract(from_track);
   if (!moved) return;
   const auto known = members_.find(to_track);
@@ -118,17 +112,16 @@ void Things::Rename(std::int64_t from_track, std::int64_t to_track) {
 
 void Things::Clear() {
   members_.clear();
-  company_.Clear();
   merged_.clear();
 }
 
 std::int64_t Things::ThingOf(std::int64_t track_id) const {
   const auto found = members_.find(track_id);
-  return found == members_.end() || !found->second.is_joined ? company_.NameOf(track_id) : found->second.thing;
+  return found == members_.end() ? track_id : found->second.thing;
 }
 
 bool Things::IsGroup(std::int64_t thing) const {
-  return thing == kLandTrack || company_.HasMore(thing) ||
+  return thing == kLandTrack ||
          std::ranges::any_of(members_, [thing](const auto& item) { return item.second.thing == thing && item.second.is_joined; });
 }
 

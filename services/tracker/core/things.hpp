@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "common/core/utime.hpp"
-#include "services/tracker/core/company.hpp"
 #include "services/tracker/core/picture.hpp"
 #include "services/tracker/core/proof.hpp"
 
@@ -18,15 +17,16 @@ namespace lookout::tracker {
 /// track that belongs to land, belongs to it; one that stands beside a structure belongs to that, and any two that stand side by side are one. It
 /// stays so, since outlines and kinds flicker, until it moves or is no track any more. So a boat that casts off is a thing of its own.
 ///
-/// A track that came up within Company::kPartM of a known one, or is not confirmed yet, is a part of that. Around a boat that lies still all tracks
-/// that stand within kBesideM are its berth: it steers nowhere.
-///
-/// Tracks that move together (Company) are one as well.
+/// A track that came up within kPartM of a known one, or is not confirmed yet, is a part of that. Around a boat that lies still all tracks that stand
+/// within kBesideM are its berth: it steers nowhere.
 class Things {
  public:
   static constexpr double kBesideM = 3.0;
   /// Of any two that stand: nobody steers between them.
   static constexpr double kTouchM = 1.0;
+  /// A thing is seen in so many parts.
+  static constexpr double kPartM = 2.0;
+  static constexpr double kKnownS = 3.0;
   /// One less than raise an alert, so that it comes up as one. What moves is known to within a second, and leaves again.
   static constexpr int kStandsScans = 2;
 
@@ -38,7 +38,7 @@ class Things {
   void Rename(std::int64_t from_track, std::int64_t to_track);
   void Clear();
 
-  /// The thing that a track belongs to: land, the first track of its structure or company, or it alone.
+  /// The thing that a track belongs to: land, the first track of its structure, or it alone.
   std::int64_t ThingOf(std::int64_t track_id) const;
   /// Whether the thing has more than one track.
   bool IsGroup(std::int64_t thing) const;
@@ -55,8 +55,7 @@ class Things {
   void Join(std::int64_t from_thing, std::int64_t to_thing);
   void RenameOrphans();
 
-  std::map<std::int64_t, Member> members_;  // tracks that stand
-  Company company_;                         // tracks that move
+  std::map<std::int64_t, Member> members_;  // by track
   std::vector<std::pair<std::int64_t, std::int64_t>> merged_;
 };
 

@@ -216,6 +216,25 @@ TEST_F(AlertsTest, OfAThingWithoutATrackRingAgainWhenItComesMuchNearer) {
   EXPECT_EQ(Only().state, AlertState::kActive);
 }
 
+// Two moored boats, each acknowledged, turned out to lie at one quay, and rang again.
+TEST_F(AlertsTest, OfTwoAcknowledgedThingsThatBecomeOneStayAcknowledged) {
+  auto one = Zone(3, 8.0);
+  one.bearing_rad = At(20.0, 8.0).bearing_rad;
+  auto other = Zone(5, 6.0);
+  other.bearing_rad = At(100.0, 6.0).bearing_rad;
+  Scans(3, {one, other});
+  const auto raised = alerts_.alerts();
+  ASSERT_EQ(raised.size(), 2U);
+  for (const auto& alert : raised) ASSERT_TRUE(Acknowledge(alert));
+  Scans(3, {one, other});
+  alerts_.Rename(5, 3, time_);
+  Scans(20, {Of(3, {At(20.0, 8.0), At(100.0, 6.0)})});
+  EXPECT_EQ(Only().state, AlertState::kAcknowledged);
+  // A third place was told to nobody.
+  Scans(5, {Of(3, {At(20.0, 8.0), At(100.0, 6.0), At(220.0, 7.0)})});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+}
+
 // A swimmer comes up beside a buoy that somebody has acknowledged, and is taken for one thing with it.
 TEST_F(AlertsTest, OfAThingThatWasAcknowledgedAloneRingForWhatComesToItSince) {
   for (const bool is_piece : {true, false}) {
