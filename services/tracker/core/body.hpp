@@ -127,8 +127,8 @@ class Body {
   Eigen::Vector2d first_m_ = Eigen::Vector2d::Zero();      // the position at first
   Eigen::Vector2d last_jump_m_ = Eigen::Vector2d::Zero();  // of the last new part: from the expected middle to the seen one
   double since_jump_s_ = 0.0;
-  bool goes_on_ = false;                                        // the last two jumps went the same way
-  Eigen::Vector2d centered_m_ = Eigen::Vector2d::Zero();        // way of the position by Center() since the beginning, in the thing's own frame
+  bool goes_on_ = false;                                  // the last two jumps went the same way
+  Eigen::Vector2d centered_m_ = Eigen::Vector2d::Zero();  // way of the position by Center() since the beginning, in the thing's own frame
   Eigen::Vector2d standing_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d standing_m2_ = Eigen::Matrix2d::Zero();
   Motion moving_ = Motion::Zero();
