@@ -366,6 +366,23 @@ TEST(ClosestApproachDangers, OfAPieceOfTheBerthAreNoneForABoatThatLiesStill) {
   }
 }
 
+// A boat that passes in the fairway is seen first 50 m off, and its course is a guess: 10 cautions an hour in a berth.
+TEST(ClosestApproachDangers, OfABoatFarOffWaitForABoatThatLiesStill) {
+  Picture picture;
+  auto track = At(1, {0.0, 50.0});
+  track.velocity_mps = {0.0, -2.2};
+  for (const auto& [tcpa_s, is_far] : {std::pair{22.0, true}, {12.0, false}}) {
+    track.approach = {.distance_m = 2.2 * tcpa_s, .cpa_m = 0.0, .tcpa_s = tcpa_s, .probability = 0.9};
+    picture.tracks = {track};
+    const auto under_way = ClosestApproachDangers(kApproach, picture, Own(), false);
+    const auto still = ClosestApproachDangers(kApproach, picture, Own(), true);
+    ASSERT_EQ(still.size(), 1U);
+    EXPECT_EQ(under_way.at(0).probability, 0.9);
+    EXPECT_EQ(still[0].probability < 0.5, is_far) << tcpa_s;
+    EXPECT_GT(still[0].probability, 0.2) << "ends no alert";
+  }
+}
+
 // Beams that find nothing where it would be by now say that it is elsewhere. What stands is told all the same: waves may hide it.
 TEST(ClosestApproachDangers, OfWhatMovesAreAsLikelyAsItIsThere) {
   Picture picture;
