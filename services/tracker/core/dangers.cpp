@@ -29,7 +29,8 @@ constexpr std::chrono::milliseconds kSeenNow{300};
 constexpr double kCrestS = 5.0;
 // A thing that comes up so near to a known one is a part of it until it is a track of its own.
 constexpr double kPartM = 2.0;
-// A boat in her berth does not keep clear of a boat that passes: she need not know of it so long before, and its course is known better by then.
+// A boat in her berth does not keep clear of a boat that passes: she need not know of the passing boat so long before, and its course is known better
+// by then. A boat that needs longer to act is told as long before.
 constexpr double kBerthS = 15.0;
 // What has an alert and is so near beyond the zone keeps it.
 constexpr double kEdgeShare = 1.2;
@@ -359,7 +360,7 @@ std::vector<Danger> ClosestApproachDangers(const ApproachParams& params, const P
       if (is_young) doubt(standing);
       if (!is_own_still && IsGraver(standing, danger)) danger = standing;
     }
-    if (is_own_still && danger.time_left_s > kBerthS) danger.probability = std::min(danger.probability, kAtEdge);
+    if (is_own_still && danger.time_left_s > std::max(kBerthS, needed_s)) danger.probability = std::min(danger.probability, kAtEdge);
     if (danger.thing != track.id) danger.bearing_rad = place.bearing_rad;
     if (danger.probability >= kLikelyApproach && things.IsGroup(danger.thing)) places_of[danger.thing].push_back(place);
     dangers.push_back(std::move(danger));

@@ -60,7 +60,8 @@ struct ApproachParams {
 
 /// Confirmed and coasting tracks, tentative tracks that last (Proof), and land on the boat's way. A danger that leaves less time than this boat needs
 /// to act is grave. Where the own boat lies still and the track stands, neither comes nearer: the guard zone alone tells such tracks. So nothing
-/// rings for a boat in its berth, while a boat that drifts down on a pile is warned.
+/// rings for a boat in its berth, while a boat that drifts down on a pile is warned. A moving track raises an alert of a boat that
+/// lies still only when at most 15 s are left, or the time that this boat needs to act where that is longer.
 ///
 /// A course that is not proven counts only where waiting longer would be too late and while the track is seen, and is just seen. The track counts as
 /// if it stood where that is graver.

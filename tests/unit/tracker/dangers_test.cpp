@@ -380,6 +380,8 @@ TEST(ClosestApproachDangers, OfABoatFarOffWaitForABoatThatLiesStill) {
     EXPECT_EQ(under_way.at(0).probability, 0.9);
     EXPECT_EQ(still[0].probability < 0.5, is_far) << tcpa_s;
     EXPECT_GT(still[0].probability, 0.2) << "ends no alert";
+    const ApproachParams slow_to_act{.limit_m = 5.0, .ability = {.reaction_s = 30.0}};
+    EXPECT_EQ(ClosestApproachDangers(slow_to_act, picture, Own(), true).at(0).probability, 0.9) << "no time to lose";
   }
 }
 
