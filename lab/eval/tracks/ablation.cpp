@@ -16,11 +16,9 @@ tracker::Params With(tracker::Params params, const tracker::Without& without) {
 }  // namespace
 
 std::vector<Ablation> Ablations() {
-  return {{"without ledger", {.ledger = true}},
-          {"without watched water", {.watched_water = true}},
-          {"without outlines", {.outlines = true}},
-          {"without beams", {.beams = true}},
-          {"without parts", {.parts = true}}};
+  return {{"without ledger", {.ledger = true}},     {"without watched water", {.watched_water = true}},
+          {"without outlines", {.outlines = true}}, {"without beams", {.beams = true}},
+          {"without surface", {.surface = true}},   {"without parts", {.parts = true}}};
 }
 
 AblatedTracker::AblatedTracker(tracker::Params params, const tracker::Without& without, std::function<void(Bytes)> on_tracks)

@@ -63,6 +63,15 @@ constexpr double kLoosenedS = 1.0;
 // Deviation that is added to the velocity of a track that goes on as another track.
 constexpr double kOtherTrackMps = 0.3;
 
+// Errors of a speed by the surface, over the second of a shift: of the own place and heading, and a share of the speed, as another part of the hull
+// is met.
+constexpr double kOwnChangeMps = 0.15;
+constexpr double kHeadingChangeRad = 0.003;
+constexpr double kSurfaceSpeedShare = 0.03;
+// How well a surface is found again differs from thing to thing: its speeds scatter by so many times the variance, in the mean of some seconds.
+constexpr double kSurfaceScatterS = 2.0;
+constexpr double kMostSurfaceScatter = 30.0;
+
 constexpr std::size_t kMostParts = 3;  // beside the one that is seen
 
 // Of a normal density at `off`, without the factor of 2 pi.
@@ -229,6 +238,32 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   stands_out_ = speed > kLeastSpeedMps && (is_loosened || speed > (stands_out_ ? kSpeedSdsOn : kSpeedSds) * speed_sd);
   moved_s_ = stands_out_ && prefers_moving_ ? moved_s_ + dt_s : 0.0;
   if (moved_s_ < kMovesAfterS) moving_probability_ = std::min(moving_probability_, 0.5);
+}
+
+void Body::Update(const SurfaceShift& surface, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) {
+  const Eigen::Vector2d sight = (center_m() - sides.from_m).normalized();
+  const Eigen::Vector2d across(-sight.y(), sight.x());
+  const double heading_m = kHeadingChangeRad * range_m;
+  const Eigen::Matrix2d shift_m2 = surface.covariance_m2 + NoiseOf(noise_m2, range_m) + heading_m * heading_m * across * across.transpose();
+  const Eigen::Vector2d seen_mps = surface.shift_m / surface.over_s;
+  // In a turn it is the velocity of half of that time ago.
+  const double turned_rad = 0.5 * surface.over_s * moving_[4];
+  const double share2 = kSurfaceSpeedShare * kSurfaceSpeedShare + turned_rad * turned_rad;
+  const double speed2 = kOwnChangeMps * kOwnChangeMps + share2 * seen_mps.squaredNorm();
+  Eigen::Matrix2d noise = shift_m2 / (surface.over_s * surface.over_s) + speed2 * Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d off_moving = seen_mps - velocity_mps();
+  const Eigen::Matrix2d expected = noise + moving_covariance_.block<2, 2>(2, 2);
+  const double off = std::min(kMostSurfaceScatter, 0.5 * off_moving.dot(expected.inverse() * off_moving));
+  surface_scatter_ += std::min(1.0, surface.new_s / kSurfaceScatterS) * (off - surface_scatter_);
+  // Shifts over the same time say the same.
+  noise *= std::max(1.0, surface_scatter_) * surface.over_s / surface.new_s;
+  const Eigen::Matrix2d spread_moving = moving_covariance_.block<2, 2>(2, 2) + noise;
+  log_likelihood_ratio_ += LogDensity(off_moving, spread_moving) - LogDensity(seen_mps, noise);
+  log_likelihood_ratio_ = std::clamp(log_likelihood_ratio_, -kGreatestLogOdds, kGreatestLogOdds);
+  const Eigen::Matrix<double, 5, 2> gain = moving_covariance_.block<5, 2>(0, 2) * spread_moving.inverse();
+  moving_ += gain * off_moving;
+  moving_covariance_ -= gain * spread_moving * gain.transpose();
+  moving_covariance_ = (0.5 * (moving_covariance_ + moving_covariance_.transpose())).eval();
 }
 
 void Body::Loosen(double variance_m2) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/tracker/core/outline.hpp"
+#include "services/tracker/core/surface_motion.hpp"
 
 namespace lookout::tracker {
 
@@ -51,6 +52,10 @@ class Body {
 
   /// @param grows  false where the seen outline may hold another thing too: then it changes the position alone, not the sides
   void Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows);
+
+  /// Motion by the surface, which tells it sooner and more exactly than the outline.
+  /// @param noise_m2  covariance of its position relative to the own boat
+  void Update(const SurfaceShift& surface, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m);
 
   /// The whole outline, at the predicted position.
   std::vector<Eigen::Vector2d> Outline() const;
@@ -133,6 +138,7 @@ class Body {
   Eigen::Matrix2d standing_m2_ = Eigen::Matrix2d::Zero();
   Motion moving_ = Motion::Zero();
   MotionCovariance moving_covariance_ = MotionCovariance::Zero();
+  double surface_scatter_ = 1.0;       // of speeds by the surface: mean square, in their deviations
   double log_likelihood_ratio_ = 0.0;  // of moving over standing, by the last seconds
   double moving_probability_ = 0.0;    // one half at most where the speed does not stand out
   bool prefers_moving_ = false;        // the moving filter says where the thing is, not the standing one

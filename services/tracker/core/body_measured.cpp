@@ -178,7 +178,9 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Reaches& known, const 
   }
   shift.is_part = measured.short_m > 0.0;
   const auto off_by = [](const Eigen::Vector2d& off, const Eigen::Matrix2d& spread) { return off.dot(spread.inverse() * off); };
-  const Eigen::Matrix2d spread_moving = shift.covariance_m2 + moving_covariance_.topLeftCorner<2, 2>();
+  const double outline_m = outline_sd_m();
+  const Eigen::Matrix2d spread_moving =
+      shift.covariance_m2 + moving_covariance_.topLeftCorner<2, 2>() + outline_m * outline_m * Eigen::Matrix2d::Identity();
   shift.off = off_by(position + shift.shift_m - moving_.head<2>(), spread_moving);
   // A thing that is thought to stand may have begun to move: then it is where it would be if it moved.
   if (!prefers_moving_) shift.off = std::min(shift.off, off_by(shift.shift_m, spread_moving + standing_m2_));

@@ -13,6 +13,7 @@
 #include "common/core/utime.hpp"
 #include "services/tracker/core/body.hpp"
 #include "services/tracker/core/encounter.hpp"
+#include "services/tracker/core/surface_motion.hpp"
 #include "services/tracker/core/watched_water.hpp"
 
 namespace lookout::tracker {
@@ -36,6 +37,7 @@ struct Followed {
   Utime seen;
   Utime seen_alone;                        // when it was last seen by itself, and not inside of another track's sighting
   std::optional<Body> body;                // none until the track is likely: its last sighting stands for it
+  SurfaceMotion surface;                   // once it has a body
   std::vector<Eigen::Vector2d> outline_m;  // predicted
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
   double radius_m = 0.0;

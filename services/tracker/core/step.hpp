@@ -25,7 +25,7 @@ namespace lookout::tracker {
 inline constexpr double kLongestWholeM = 15.0;
 inline constexpr double kWidestBoatM = 6.0;
 
-inline constexpr std::size_t kMostTracks = 8000;  // 20 MB; rain has 1500
+inline constexpr std::size_t kMostTracks = 8000;  // 20 MB, and 50 kB for each with 20 returns or more; rain has 1500, of a few returns
 
 using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower first
 
@@ -107,6 +107,7 @@ class Step {
   void ConfirmWhereLikely(Followed& track, std::size_t i);
   void Confirm(Followed& track);
   void Move(Followed& track, std::size_t i, const Seen& seen, const Sides& sides);
+  void MoveBySurface(Followed& track, const Sighting& sighting, const Sides& sides, bool is_one) const;
   void Believe(Followed& track, std::size_t i, const Seen& seen, const Eigen::Vector2d& expected_m);
   void FeedLand();
   void EndLand();

@@ -1,6 +1,7 @@
 // How a track moves.
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,7 +31,7 @@ void Step::Place(Followed& track) {
   track.radius_m = RadiusOf(track.outline_m, track.middle_m);
 }
 
-// Place and motion by the seen outline.
+// Place and motion by the seen outline and surface.
 void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& sides) {
   const auto& sighting = sightings_[i];
   if (!track.body) {
@@ -54,7 +55,21 @@ void Step::Move(Followed& track, std::size_t i, const Seen& seen, const Sides& s
     track.body->AddPart(seen.outline_m, sides, sighting.range_m, shift.off >= kMostOff && !shift.is_part);
     if (params_.without.parts) track.body->KeepSeenPart();
   }
+  MoveBySurface(track, sighting, sides, grows);
   Place(track);
+}
+
+// @param is_one  the returns are those of one thing: a boat beside a quay would be found to move as much as both do together
+void Step::MoveBySurface(Followed& track, const Sighting& sighting, const Sides& sides, bool is_one) const {
+  if (params_.without.surface) return;
+  if (!is_one && track.body->IsMoving(0.5)) {
+    track.surface.Clear();
+    return;
+  }
+  std::optional<Eigen::Vector2d> velocity_mps;
+  if (!sides.is_left_hidden && !sides.is_right_hidden) velocity_mps = track.body->velocity_mps();
+  const auto surface = track.surface.Update(sighting.seen.time, sighting.places_m, sighting.heights_m, velocity_mps);
+  if (surface) track.body->Update(*surface, sides, sighting.seen.covariance_relative_m2, sighting.range_m);
 }
 
 // A moving thing is remembered in a frame of its own, until it has stood for a while.

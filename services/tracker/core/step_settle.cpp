@@ -80,6 +80,7 @@ void Step::Settle() {
     for (auto& corner : track.outline_m) corner += shift_m;
     if (!track.body) continue;
     track.body->Translate(shift_m);
+    track.surface.Translate(shift_m);
     track.body->Loosen(is_sure && nearest_to(track.seen_m) != nullptr ? kLooseM * kLooseM : sd_m * sd_m);
     Place(track);
   }

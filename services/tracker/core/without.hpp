@@ -9,6 +9,7 @@ struct Without {
   bool watched_water = false;  // a track may have come from anywhere
   bool outlines = false;       // a sighting is of the track whose middle is nearest
   bool beams = false;          // nobody knows what could have been seen
+  bool surface = false;        // motion is told by outlines alone
   bool parts = false;          // a thing has the one outline that was seen last
 };
 
