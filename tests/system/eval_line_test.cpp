@@ -84,7 +84,7 @@ TEST_F(EvalLine, TracksWithoutEachPartHaveOneTable) {
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(std::distance(fs::directory_iterator(Path("csv")), fs::directory_iterator()), 1);
   const auto table = ReadFile(Path("csv") + "/tracks_ablation.csv");
-  EXPECT_EQ(std::ranges::count(table, '\n'), 7) << table;  // its head, the tracker, five parts
+  EXPECT_EQ(std::ranges::count(table, '\n'), 8) << table;  // its head, the tracker, six parts
   EXPECT_NE(table.find("own scenes,without ledger,"), std::string::npos) << table;
   EXPECT_EQ(Run({"--ablation", "--scenes", "sparse"}).exit_code, 2) << "of methods there is none";
   EXPECT_EQ(Run({"--tracks", "--scenes", "beach", "--leave-out", "beach"}).exit_code, 2) << "no weights";

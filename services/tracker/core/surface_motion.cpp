@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "common/core/elementary.hpp"
 
@@ -53,6 +57,28 @@ Eigen::Matrix2d WeightOf(const Eigen::Matrix2d& spread_m2) {
   return 0.5 * (one - along) / across_m2 + 0.5 * (one + along) / along_m2;
 }
 
+// The mean of the returns in each cell, of cells so large that kMostPoints are left at the most. It depends neither on their order nor on the side
+// from which they are counted.
+std::vector<Eigen::Vector3d> Thinned(std::span<const Eigen::Vector2d> places_m, std::span<const double> heights_m) {
+  constexpr double kLeastCellM = 0.1;
+  constexpr double kLarger = 1.4;
+  std::vector<Eigen::Vector3d> points_m;
+  for (std::size_t i = 0; i < places_m.size(); ++i) points_m.emplace_back(places_m[i].x(), places_m[i].y(), heights_m[i]);
+  for (double cell_m = kLeastCellM; points_m.size() > kMostPoints; cell_m *= kLarger) {
+    std::map<std::array<std::int64_t, 3>, std::pair<Eigen::Vector3d, double>> cells;
+    for (std::size_t i = 0; i < places_m.size(); ++i) {
+      const Eigen::Vector3d point_m(places_m[i].x(), places_m[i].y(), heights_m[i]);
+      const auto at = [&](int axis) { return static_cast<std::int64_t>(std::floor(point_m[axis] / cell_m)); };
+      auto& [sum, count] = cells.try_emplace({at(0), at(1), at(2)}, Eigen::Vector3d::Zero(), 0.0).first->second;
+      sum += point_m;
+      count += 1.0;
+    }
+    points_m.clear();
+    for (const auto& [cell, of] : cells) points_m.emplace_back(of.first / of.second);
+  }
+  return points_m;
+}
+
 }  // namespace
 
 struct SurfaceMotion::Match {
@@ -70,11 +96,11 @@ struct SurfaceMotion::Match {
 
 SurfaceMotion::Look SurfaceMotion::LookOf(Utime time, std::span<const Eigen::Vector2d> places_m, std::span<const double> heights_m) {
   Look look{time, {}};
-  const std::size_t num = std::min(places_m.size(), kMostPoints);
-  for (std::size_t k = 0; k < num; ++k) {
-    const std::size_t i = k * places_m.size() / num;
-    look.points.push_back({{places_m[i].x(), places_m[i].y(), heights_m[i]}, Eigen::Matrix2d::Identity() / (kLoneSdM * kLoneSdM)});
+  for (const auto& place_m : Thinned(places_m, heights_m)) {
+    look.points.push_back({place_m, Eigen::Matrix2d::Identity() / (kLoneSdM * kLoneSdM)});
   }
+  const std::size_t num = look.points.size();
+  if (num < kLeastBeside) return look;
   std::vector<Eigen::Vector3d> off_m(num);
   for (auto& point : look.points) {
     for (std::size_t k = 0; k < num; ++k) off_m[k] = look.points[k].place_m - point.place_m;
