@@ -208,8 +208,7 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   const Eigen::Vector2d off_moving = measured_m - moving_.head<2>();
   const Eigen::Matrix2d spread_standing = standing_m2_ + covariance_m2;
   const Eigen::Matrix2d spread_moving = moving_covariance_.topLeftCorner<2, 2>() + covariance_m2;
-  log_likelihood_ratio_ += LogDensity(off_moving, spread_moving) - LogDensity(off_standing, spread_standing);
-  log_likelihood_ratio_ = std::clamp(log_likelihood_ratio_, -kGreatestLogOdds, kGreatestLogOdds);
+  Weigh(LogDensity(off_moving, spread_moving) - LogDensity(off_standing, spread_standing));
 
   const Eigen::Matrix2d gain_standing = standing_m2_ * spread_standing.inverse();
   standing_ += gain_standing * off_standing;
@@ -222,10 +221,7 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   if (off > kManoeuvreSds * kManoeuvreSds) {
     moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (kManoeuvreMps2 * kManoeuvreMps2 * dt_s);
   }
-  const Eigen::Matrix<double, 5, 2> gain_moving = moving_covariance_.leftCols<2>() * spread_moving.inverse();
-  moving_ += gain_moving * off_moving;
-  moving_covariance_ -= gain_moving * spread_moving * gain_moving.transpose();
-  moving_covariance_ = (0.5 * (moving_covariance_ + moving_covariance_.transpose())).eval();
+  CorrectMoving(0, off_moving, spread_moving);
 
   if (prefers_moving_ != (log_likelihood_ratio_ + kMovingPriorLogOdds > 0.0)) parts_s_ = 0.0;  // they are counted from another place
   prefers_moving_ = log_likelihood_ratio_ + kMovingPriorLogOdds > 0.0;
@@ -258,11 +254,20 @@ void Body::Update(const SurfaceShift& surface, const Sides& sides, const Eigen::
   // Shifts over the same time say the same.
   noise *= std::max(1.0, surface_scatter_) * surface.over_s / surface.new_s;
   const Eigen::Matrix2d spread_moving = moving_covariance_.block<2, 2>(2, 2) + noise;
-  log_likelihood_ratio_ += LogDensity(off_moving, spread_moving) - LogDensity(seen_mps, noise);
-  log_likelihood_ratio_ = std::clamp(log_likelihood_ratio_, -kGreatestLogOdds, kGreatestLogOdds);
-  const Eigen::Matrix<double, 5, 2> gain = moving_covariance_.block<5, 2>(0, 2) * spread_moving.inverse();
-  moving_ += gain * off_moving;
-  moving_covariance_ -= gain * spread_moving * gain.transpose();
+  Weigh(LogDensity(off_moving, spread_moving) - LogDensity(seen_mps, noise));
+  CorrectMoving(2, off_moving, spread_moving);
+}
+
+// @param log_ratio  of the likelihood of a measurement, moving over standing
+void Body::Weigh(double log_ratio) { log_likelihood_ratio_ = std::clamp(log_likelihood_ratio_ + log_ratio, -kGreatestLogOdds, kGreatestLogOdds); }
+
+// @param first   0: the position was measured; 2: the velocity
+// @param off     measured less expected
+// @param spread  covariance of `off`
+void Body::CorrectMoving(Eigen::Index first, const Eigen::Vector2d& off, const Eigen::Matrix2d& spread) {
+  const Eigen::Matrix<double, 5, 2> gain = moving_covariance_.middleCols<2>(first) * spread.inverse();
+  moving_ += gain * off;
+  moving_covariance_ -= gain * spread * gain.transpose();
   moving_covariance_ = (0.5 * (moving_covariance_ + moving_covariance_.transpose())).eval();
 }
 

@@ -54,6 +54,7 @@ class Body {
   void Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows);
 
   /// Motion by the surface, which tells it sooner and more exactly than the outline.
+  /// @param sides     from where the surface was seen
   /// @param noise_m2  covariance of its position relative to the own boat
   void Update(const SurfaceShift& surface, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m);
 
@@ -122,6 +123,8 @@ class Body {
   double size_m() const;
   double outline_sd_m() const;
   Eigen::Matrix2d velocity_covariance() const;
+  void Weigh(double log_ratio);
+  void CorrectMoving(Eigen::Index first, const Eigen::Vector2d& off, const Eigen::Matrix2d& spread);
   void Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s);
   void AssumeBy(const Measured& measured);
   void TakePart(const Measured& measured, double dt_s);

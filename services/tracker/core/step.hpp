@@ -25,7 +25,7 @@ namespace lookout::tracker {
 inline constexpr double kLongestWholeM = 15.0;
 inline constexpr double kWidestBoatM = 6.0;
 
-inline constexpr std::size_t kMostTracks = 8000;  // 20 MB, and 50 kB for each with 20 returns or more; rain has 1500, of a few returns
+inline constexpr std::size_t kMostTracks = 8000;  // 20 MB, and 50 kB for each with 12 returns or more; rain has 1500, of a few returns
 
 using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower first
 

@@ -57,26 +57,34 @@ Eigen::Matrix2d WeightOf(const Eigen::Matrix2d& spread_m2) {
   return 0.5 * (one - along) / across_m2 + 0.5 * (one + along) / along_m2;
 }
 
-// The mean of the returns in each cell, of cells so large that kMostPoints are left at the most. It depends neither on their order nor on the side
-// from which they are counted.
-std::vector<Eigen::Vector3d> Thinned(std::span<const Eigen::Vector2d> places_m, std::span<const double> heights_m) {
+struct Mean {
+  Eigen::Vector3d sum_m;
+  double count;
+
+  Eigen::Vector3d place_m() const { return sum_m / count; }
+};
+
+// The means of the returns by cells, of cells so large that kMostPoints are left at the most. They depend neither on the order of the returns nor on
+// the side from which they are counted.
+std::vector<Mean> Thinned(std::span<const Eigen::Vector2d> places_m, std::span<const double> heights_m) {
   constexpr double kLeastCellM = 0.1;
   constexpr double kLarger = 1.4;
-  std::vector<Eigen::Vector3d> points_m;
-  for (std::size_t i = 0; i < places_m.size(); ++i) points_m.emplace_back(places_m[i].x(), places_m[i].y(), heights_m[i]);
-  for (double cell_m = kLeastCellM; points_m.size() > kMostPoints; cell_m *= kLarger) {
-    std::map<std::array<std::int64_t, 3>, std::pair<Eigen::Vector3d, double>> cells;
-    for (std::size_t i = 0; i < places_m.size(); ++i) {
-      const Eigen::Vector3d point_m(places_m[i].x(), places_m[i].y(), heights_m[i]);
-      const auto at = [&](int axis) { return static_cast<std::int64_t>(std::floor(point_m[axis] / cell_m)); };
-      auto& [sum, count] = cells.try_emplace({at(0), at(1), at(2)}, Eigen::Vector3d::Zero(), 0.0).first->second;
-      sum += point_m;
-      count += 1.0;
+  std::vector<Mean> means;
+  means.reserve(places_m.size());
+  for (std::size_t i = 0; i < places_m.size(); ++i) means.push_back({{places_m[i].x(), places_m[i].y(), heights_m[i]}, 1.0});
+  for (double cell_m = kLeastCellM; means.size() > kMostPoints; cell_m *= kLarger) {
+    std::map<std::array<std::int64_t, 3>, Mean> cells;
+    for (const auto& mean : means) {
+      const Eigen::Vector3d place_m = mean.place_m();
+      const auto at = [&](int axis) { return static_cast<std::int64_t>(std::floor(place_m[axis] / cell_m)); };
+      auto& cell = cells.try_emplace({at(0), at(1), at(2)}, Mean{Eigen::Vector3d::Zero(), 0.0}).first->second;
+      cell.sum_m += mean.sum_m;
+      cell.count += mean.count;
     }
-    points_m.clear();
-    for (const auto& [cell, of] : cells) points_m.emplace_back(of.first / of.second);
+    means.clear();
+    for (const auto& [at, mean] : cells) means.push_back(mean);
   }
-  return points_m;
+  return means;
 }
 
 }  // namespace
@@ -96,8 +104,8 @@ struct SurfaceMotion::Match {
 
 SurfaceMotion::Look SurfaceMotion::LookOf(Utime time, std::span<const Eigen::Vector2d> places_m, std::span<const double> heights_m) {
   Look look{time, {}};
-  for (const auto& place_m : Thinned(places_m, heights_m)) {
-    look.points.push_back({place_m, Eigen::Matrix2d::Identity() / (kLoneSdM * kLoneSdM)});
+  for (const auto& mean : Thinned(places_m, heights_m)) {
+    look.points.push_back({mean.place_m(), Eigen::Matrix2d::Identity() / (kLoneSdM * kLoneSdM)});
   }
   const std::size_t num = look.points.size();
   if (num < kLeastBeside) return look;
@@ -185,7 +193,7 @@ SurfaceMotion::Match SurfaceMotion::MatchWith(const Look& before, const Look& no
   if (best.IsFound(kGoodShare)) return best;
   // What moves fast is found by way of the last look, since which it has not gone far.
   const auto& last = looks_.back();
-  const auto lately = BestOf(last, now, velocities_mps.first(std::min<std::size_t>(2, velocities_mps.size())));
+  const auto lately = BestOf(last, now, velocities_mps.first(velocity_mps ? 2 : 1));
   const std::array<Eigen::Vector2d, 1> lately_mps{Eigen::Vector2d(lately.shift_m / ToSeconds(now.time - last.time))};
   auto other = BestOf(before, now, lately_mps);
   return other.cost < best.cost ? other : best;

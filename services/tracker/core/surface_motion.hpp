@@ -26,7 +26,7 @@ struct SurfaceShift {
 /// tells how far it moved; a lone return, as of a mast, tells it roughly.
 ///
 /// P. J. Besl and N. D. McKay, "A Method for Registration of 3-D Shapes", 1992; A. Segal, D. Haehnel and S. Thrun, "Generalized-ICP", 2009.
-/// Cost: 0.1 to 0.3 ms and 50 kB for a thing of 64 returns or more, which are thinned to 64.
+/// Cost: 0.1 ms for 64 returns, 0.5 ms for 1000, of which the means of at most 64 cells are matched; 50 kB.
 class SurfaceMotion {
  public:
   /// Returns of one more scan.
